@@ -142,12 +142,11 @@ def simulate(scenario: Scenario) -> Drive:
     trajectory = drive(scenario.route, plan, scenario.seconds, scenario.vibration, riding)
     t = _sampling_times(scenario, sensing)
     f_s, w_s = _readings(scenario, truth_of, trajectory, t, riding, sensing)
-    arrival = _arrival_times(scenario)
-    fix, valid = _fixes(scenario, truth_of, trajectory, arrival, receiving)
-    rows, first = np.unique(np.searchsorted(t, arrival), return_index=True)
-    samples = Samples.make(t, f_s, w_s, rows, valid[first], fix[first])
-    there = trajectory.at(arrival)
-    truth = Truth(scenario, *truth_of, arrival, _attitude(there), there.v_n, there.speed)
+    rows, reported = _fix_rows(scenario, t)
+    fix, valid = _fixes(scenario, truth_of, trajectory, reported, receiving)
+    samples = Samples.make(t, f_s, w_s, rows, valid, fix)
+    there = trajectory.at(t[rows])
+    truth = Truth(scenario, *truth_of, t[rows], _attitude(there), there.v_n, there.speed)
     return Drive(samples, truth)
 
 
@@ -202,10 +201,11 @@ def _sampling_times(scenario: Scenario, rng: np.random.Generator) -> Floats:
     return np.maximum(np.arange(jitter.size) * step + jitter, 0.0)
 
 
-def _arrival_times(scenario: Scenario) -> Floats:
-    """Fixes arrive on a raster half a millisecond off the second, up to the last sample."""
-    step = 1 / scenario.gps_rate
-    return np.arange(step, scenario.seconds - 1 / scenario.imu_rate, step) - 5e-4
+def _fix_rows(scenario: Scenario, t: Floats) -> tuple[NDArray[np.int64], Floats]:
+    """Give the sample each fix arrives with, and the time on the receiver's raster it was sent at."""
+    raster = np.arange(1 / scenario.gps_rate, t[-1], 1 / scenario.gps_rate)
+    rows, first = np.unique(np.searchsorted(t, raster - 1e-6), return_index=True)
+    return rows, raster[first]
 
 
 def _readings(
@@ -245,16 +245,16 @@ def _mounting(chosen: _Chosen, t: Floats) -> tuple[Floats, Floats]:
 
 
 def _fixes(
-    scenario: Scenario, chosen: _Chosen, trajectory: Trajectory, arrival: Floats, rng: np.random.Generator
+    scenario: Scenario, chosen: _Chosen, trajectory: Trajectory, reported: Floats, rng: np.random.Generator
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    t = arrival - chosen.latency
+    """Fixes reported at these times, and whether each is valid."""
     receiver = Receiver(vertical_speed=scenario.vertical_speed, accuracy=scenario.accuracy)
     if scenario.ideal:
         receiver = Receiver(0.0, 0.0, 0.0, 0.0, 0.0, scenario.vertical_speed, scenario.accuracy)
-    fix = gps_fixes(trajectory, trajectory.at(t), t, chosen.antenna_arm, receiver, rng)
-    lost = np.zeros(arrival.size, np.bool_)
+    fix = gps_fixes(trajectory, reported - chosen.latency, chosen.antenna_arm, receiver, rng)
+    lost = np.zeros(reported.size, np.bool_)
     for start, end in scenario.outages:
-        lost |= (arrival >= start) & (arrival < end)
+        lost |= (reported >= start) & (reported < end)
     return np.where(lost[:, None], np.nan, fix), ~lost
 
 

@@ -96,15 +96,15 @@ class Itinerary:
 
 def _city(plan: Itinerary) -> None:
     plan.reach(plan.uniform(8, 15))
-    plan.hold(plan.uniform(3, 16))
-    what = plan.rng.random()
-    if what < 0.35:
+    plan.hold(plan.uniform(3, 14))
+    if plan.chance(0.35):
         plan.stop(plan.uniform(4, 35))
-    elif what < 0.80:
+    what = plan.rng.random()
+    if what < 0.60:
         plan.turn(plan.side() * plan.uniform(0.45, 0.55) * pi, plan.uniform(8, 18), plan.uniform(1.4, 3.0))
-    elif what < 0.90:
+    elif what < 0.70:
         plan.roundabout(plan.uniform(-0.1, 0.6) * pi)
-    else:
+    elif plan.speed > 5:
         plan.lane_change()
 
 

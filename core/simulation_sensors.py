@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.samples import FIX_COLUMNS
-from core.simulation_motion import GRAVITY, Motion, Trajectory, band_noise, smooth_noise, turn
+from core.simulation_motion import GRAVITY, Trajectory, band_noise, smooth_noise, turn
 
 Floats = NDArray[np.float64]
 
@@ -114,10 +114,9 @@ class Receiver(NamedTuple):
     accuracy: bool = False
 
 
-def gps_fixes(
-    trajectory: Trajectory, motion: Motion, t: Floats, arm: Floats, receiver: Receiver, rng: np.random.Generator
-) -> Floats:
+def gps_fixes(trajectory: Trajectory, t: Floats, arm: Floats, receiver: Receiver, rng: np.random.Generator) -> Floats:
     """(M, 8) fixes that tell of the motion at the times `t` of an antenna at `arm` on the vehicle."""
+    motion = trajectory.at(t)
     rate = (t.size - 1) / (t[-1] - t[0]) if t.size > 1 else 1.0
     noise = rng.normal(size=(t.size, 4))
     drift = np.stack([smooth_noise(rng, t.size, s * rate) for s in (2.0, 2.0, 2.0, 45.0, 45.0, 90.0)], axis=-1)
