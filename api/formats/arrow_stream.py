@@ -1,0 +1,108 @@
+"""Arrow IPC stream, `application/vnd.apache.arrow.stream`: the native columns, null for an empty cell.
+
+Made for untrusted bytes: columns are plain numbers only, and buffers compressed inside the stream are refused, since
+their size is not known before they are unpacked (compress the body with gzip or zstd instead).
+"""
+
+import struct
+
+import numpy as np
+import pyarrow as pa
+
+from api.formats import checks
+from api.formats.compression import Limits
+from api.formats.delimited import Cell, Columns, Floats
+from api.formats.errors import FormatError, Problem
+from api.formats.log import ParsedLog
+from api.formats.native import READ, NativeTable, check_names
+
+MEDIA_TYPE = "application/vnd.apache.arrow.stream"
+
+_HEADER_FIELD, _COMPRESSION_FIELD = 2, 3
+"""places of `Message.header` and `RecordBatch.compression` in Arrow's flatbuffer tables"""
+
+
+def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
+    """Read an Arrow IPC stream.
+
+    Raises
+    ------
+    FormatError
+        413, or 422 with row (as line), column and what was expected.
+    """
+    if not content:
+        raise FormatError.unreadable(Problem(1, None, "a log", "the log is empty"))
+    try:
+        _refuse_compressed_buffers(content)
+        batches, notices = _batches(content, limits)
+    except (pa.ArrowException, OSError, struct.error, IndexError) as error:
+        message = f"expected an Arrow IPC stream: {error}"
+        raise FormatError.unreadable(Problem(None, None, "an Arrow IPC stream", message)) from error
+    columns = _columns(batches)
+    rows = columns["fix"].size
+    checks.refuse_empty(rows, line=1)
+    table = NativeTable(columns, lambda row, column: Cell(row + 1, _shown(columns[column][row])))
+    return ParsedLog(MEDIA_TYPE, digest, notices, rows, table.read)
+
+
+def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, tuple[str, ...]]:
+    with pa.ipc.open_stream(pa.BufferReader(content)) as stream:
+        notices = check_names(stream.schema.names, line=None)
+        _check_types(stream.schema)
+        batches, rows = [], 0
+        for batch in stream:
+            rows += batch.num_rows
+            if rows > limits.max_rows:
+                raise FormatError.too_large(f"the log has more than {limits.max_rows} rows")
+            batch.validate()
+            batches.append(batch)
+        return pa.Table.from_batches(batches, stream.schema), notices
+
+
+def _check_types(schema: pa.Schema) -> None:
+    """Refuse columns other than plain numbers, also the ignored ones: others may hide compressed or nested data."""
+    for field in schema:
+        if not (pa.types.is_integer(field.type) or pa.types.is_floating(field.type) or pa.types.is_boolean(field.type)):
+            message = f"expected integers, floating-point numbers or booleans, found {field.type}"
+            raise FormatError.unreadable(Problem(None, field.name, "numbers", message))
+
+
+def _columns(table: pa.Table) -> Columns:
+    names = [name for name in table.column_names if name in READ]
+    return {name: _floats(table[name].combine_chunks()) for name in names}
+
+
+def _floats(column: pa.Array) -> Floats:
+    values: Floats = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+    return np.ascontiguousarray(values, np.float64)
+
+
+def _shown(value: float) -> str:
+    return "" if np.isnan(value) else f"{value:.12g}"
+
+
+def _refuse_compressed_buffers(content: bytes) -> None:
+    for message in pa.ipc.MessageReader.open_stream(pa.BufferReader(content)):
+        if message.type == "record batch" and _is_compressed(message.metadata.to_pybytes()):
+            expected = "buffers without compression inside the stream; compress the whole body with gzip or zstd"
+            raise FormatError.unreadable(Problem(None, None, expected, f"expected {expected}"))
+
+
+def _is_compressed(metadata: bytes) -> bool:
+    """Tell whether a record batch's message sets `compression`; Arrow has no function for it: walk the flatbuffer."""
+    header = _table_field(metadata, _pointer(metadata, 0), _HEADER_FIELD)
+    return header is not None and _table_field(metadata, _pointer(metadata, header), _COMPRESSION_FIELD) is not None
+
+
+def _pointer(data: bytes, at: int) -> int:
+    """Follow the relative offset stored at `at`."""
+    return int(at + struct.unpack_from("<I", data, at)[0])
+
+
+def _table_field(data: bytes, table: int, field: int) -> int | None:
+    """Give the place of a table's field, or None where it is not set."""
+    vtable = table - struct.unpack_from("<i", data, table)[0]
+    size = struct.unpack_from("<H", data, vtable)[0]
+    entry = 4 + 2 * field
+    offset = struct.unpack_from("<H", data, vtable + entry)[0] if entry < size else 0
+    return table + offset if offset else None

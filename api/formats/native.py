@@ -1,0 +1,184 @@
+"""The native columns, whether they come as CSV or as Arrow: their names, their rules, their way to SI and radians."""
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from typing import Final
+
+import numpy as np
+
+from api.formats import checks
+from api.formats.checks import Fault, Locate, Rows
+from api.formats.delimited import Columns, Floats
+from api.formats.errors import FormatError, Problem
+from api.formats.log import Context, Reading
+from api.formats.reports import make_samples, without_fix
+
+TIME = ("t", "t_ms")
+ACCELERATION = ("ax", "ay", "az")
+RATE = ("gx", "gy", "gz")
+POSITION = ("lat", "lon")
+VELOCITY = ("speed", "course")
+GPS = ("lat", "lon", "alt", "speed", "course", "vz", "speed_acc", "course_acc")
+"""in the order of `core.FIX_COLUMNS`"""
+READ = (*TIME, *ACCELERATION, *RATE, "fix", *GPS)
+NOT_READ = ("mx", "my", "mz", "temp", "steer")
+"""known columns that the estimator does not use"""
+
+SLOW: Final = 1.0
+"""m/s; below it a receiver may leave the course empty"""
+
+_OTHER_NAMES = {
+    "time": "t", "timestamp": "t", "seconds": "t", "time_ms": "t_ms", "ostime": "t_ms", "milliseconds": "t_ms",
+    "latitude": "lat", "longitude": "lon", "lng": "lon", "altitude": "alt", "height": "alt", "elevation": "alt",
+    "velocity": "speed", "sog": "speed", "heading": "course", "cog": "course", "bearing": "course", "gps_fix": "fix",
+    "valid": "fix", "climb": "vz",
+}  # fmt: skip
+
+
+def check_names(names: Sequence[str], line: int | None) -> tuple[str, ...]:
+    """Check the column names and give notices about the ignored ones.
+
+    Raises
+    ------
+    FormatError
+        422: a name twice, a needed column missing, part of a group of three axes or of a position missing.
+    """
+    unknown = [name for name in names if name not in READ and name not in NOT_READ]
+    problems = [
+        *(Problem(line, name, "each column once", "the column is there twice") for name in _twice(names)),
+        *(Problem(line, name, f'a column "{name}"', _missing(name, unknown)) for name in _lacking(set(names))),
+    ]
+    if "t" in names and "t_ms" in names:
+        problems.append(Problem(line, "t_ms", "either t or t_ms", 'expected either "t" or "t_ms", found both'))
+    if problems:
+        raise FormatError.unreadable(*problems)
+    return tuple(f'column "{name}" is not known and was ignored{_hint(name)}' for name in unknown)
+
+
+def _twice(names: Sequence[str]) -> list[str]:
+    return sorted({name for name in names if names.count(name) > 1})
+
+
+def _lacking(names: set[str]) -> list[str]:
+    """Columns that are needed, or needed because of others that are there."""
+    needed = [*(() if "t_ms" in names else ("t",)), *ACCELERATION, "fix"]
+    needed += [name for group in (RATE, POSITION) if names & set(group) for name in group]
+    if not names & set(POSITION):
+        needed += VELOCITY
+    return [name for name in needed if name not in names]
+
+
+def _missing(name: str, unknown: Sequence[str]) -> str:
+    close = next((other for other in unknown if _known_name(other) == name), None)
+    instead = f'; "{close}" stands there instead?' if close else ""
+    return f'the column "{name}" is missing{instead}'
+
+
+def _hint(name: str) -> str:
+    known = _known_name(name)
+    return f' (did you mean "{known}"?)' if known else ""
+
+
+def _known_name(name: str) -> str | None:
+    """Guess the known column that an unknown name stands for."""
+    plain = name.strip().lower()
+    known = (*READ, *NOT_READ)
+    axis = plain[-1:] if plain[-1:] in tuple("xyz") else ""
+    for beginning, letter in (("acc", "a"), ("gyr", "g"), ("mag", "m")):
+        if axis and plain.startswith(beginning):
+            return letter + axis
+    if plain in _OTHER_NAMES:
+        return _OTHER_NAMES[plain]
+    return next(iter(get_close_matches(plain, known, 1, cutoff=0.65)), None)
+
+
+class NativeTable:
+    """The columns of one chunk, checked."""
+
+    def __init__(self, columns: Columns, locate: Locate) -> None:
+        """Check the columns and convert them to SI units.
+
+        Parameters
+        ----------
+        columns
+            (N,) each, in the units of the format, NaN for an empty cell
+        locate
+            gives the place of a cell in the log, for messages
+
+        Raises
+        ------
+        FormatError
+            422 with line, column and what was expected
+        """
+        time = "t" if "t" in columns else "t_ms"
+        checks.refuse(_faults(columns, time), locate)
+        self._t = columns[time] * (1.0 if time == "t" else 1e-3)
+        self._f_s = np.column_stack([columns[name] for name in ACCELERATION])
+        self._w_s = np.column_stack([columns[name] for name in RATE]) if "gx" in columns else None
+        self._fix_rows = np.flatnonzero(columns["fix"] == 1)
+        self._none_rows = np.flatnonzero(columns["fix"] == 0)
+        self._fix = _fix_table(columns, self._fix_rows)
+
+    def read(self, context: Context) -> Reading:
+        """Give the samples; `context` keeps the time of the last fix."""
+        none_rows = without_fix(self._t, self._fix_rows, self._none_rows, context)
+        samples = make_samples(self._t, self._f_s, self._w_s, self._fix_rows, self._fix, none_rows)
+        return Reading(samples, {}, context)
+
+
+def _faults(columns: Columns, time: str) -> list[Fault]:
+    rows = np.flatnonzero(columns["fix"] == 1)
+    fix = {name: columns[name][rows] if name in columns else np.full(rows.size, np.nan) for name in GPS}
+    return [
+        *checks.finite(columns, time, *ACCELERATION),
+        *checks.in_order(columns, time),
+        *checks.finite_or_empty(columns, *RATE, *GPS),
+        *checks.flag(columns, "fix"),
+        *_incomplete_rates(columns),
+        *_out_of_range(fix, rows),
+        *_incomplete_fixes(fix, rows),
+    ]
+
+
+def _incomplete_rates(columns: Columns) -> list[Fault]:
+    """Find rows that give some but not all axes of the gyroscope."""
+    if "gx" not in columns:
+        return []
+    empty = np.isnan([columns[name] for name in RATE])
+    partly = empty.any(axis=0) & ~empty.all(axis=0)
+    expected = "gx, gy and gz all filled or all empty"
+    return [fault for i, name in enumerate(RATE) for fault in checks.first(partly & empty[i], name, expected)]
+
+
+def _out_of_range(fix: Columns, rows: Rows) -> list[Fault]:
+    return [
+        *checks.within(fix["lat"], -90, 90, "lat", "degrees from -90 to 90", rows),
+        *checks.within(fix["lon"], -180, 180, "lon", "degrees from -180 to 180", rows),
+        *checks.within(fix["course"], 0, 360, "course", "degrees from 0 to 360", rows),
+        *checks.within(fix["speed"], 0, np.inf, "speed", "m/s, not negative", rows),
+        *checks.within(fix["speed_acc"], 0, np.inf, "speed_acc", "m/s, not negative", rows),
+        *checks.within(fix["course_acc"], 0, np.inf, "course_acc", "degrees, not negative", rows),
+    ]
+
+
+def _incomplete_fixes(fix: Columns, rows: Rows) -> list[Fault]:
+    """Find fixes that give neither a position nor a velocity, or half a position."""
+    no_lat, no_lon, no_speed, no_course = (np.isnan(fix[name]) for name in (*POSITION, *VELOCITY))
+    no_course &= ~(fix["speed"] < SLOW)
+    needed = " on a row with fix = 1 that gives no position"
+    return [
+        *checks.first(no_lat & ~no_lon, "lat", "a latitude beside the longitude", rows),
+        *checks.first(no_lon & ~no_lat, "lon", "a longitude beside the latitude", rows),
+        *checks.first(no_lat & no_lon & no_speed, "speed", f"a speed{needed}", rows),
+        *checks.first(no_lat & no_lon & no_course, "course", f"a course{needed}", rows),
+    ]
+
+
+def _fix_table(columns: Columns, rows: Rows) -> Floats:
+    """Give the fixes (M, 8), radians, as in `core.FIX_COLUMNS`."""
+    empty = np.full(rows.size, np.nan)
+    fix = np.column_stack([columns[name][rows] if name in columns else empty for name in GPS])
+    angles = [GPS.index(name) for name in ("lat", "lon", "course", "course_acc")]
+    fix[:, angles] = np.radians(fix[:, angles])
+    fix[:, GPS.index("course")] %= 2 * np.pi
+    return fix
