@@ -1,0 +1,184 @@
+"""The only door to the estimator: `advance(params, state, samples) -> (state, outcome)`.
+
+The stages in order, as in the flow chart of thesis 6.2: samples -> epochs -> coarse alignment -> filter -> moving
+average, STABLE, RELIABLE -> drive test -> confirmed mounting -> watch for an orientation change. States are values: none
+of these functions changes its arguments.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core import _kernel
+from core.events import Estimate, Estimates, Event, EventKind, Mount, Needs, Outcome, Stage, Status, Verification
+from core.params import Parameters, as_record
+from core.samples import Samples
+from core.state import State, empty_clock, empty_state
+
+Floats = NDArray[np.float64]
+
+REJECTIONS = ("duplicate_time", "before_previous_sample", "fix_without_velocity", "fix_implausible")
+_VERIFICATION_STATES = ("idle", "running", "passed", "failed")
+_EVENT_KINDS = (
+    EventKind.VERIFICATION_STARTED,
+    EventKind.VERIFICATION_PASSED,
+    EventKind.VERIFICATION_FAILED,
+    EventKind.CONFIRMED,
+    EventKind.ORIENTATION_CHANGED,
+)
+_REASONS = (
+    None,
+    "the speed integrated from the accelerometer departs from the GPS speed",
+    "filter and coarse alignment disagree",
+)
+_ROW = 13
+_EVENTS_PER_FIX = 2
+
+
+def initial_state(params: Parameters) -> State:
+    """Give the state of a device nothing is known of."""
+    del params  # both presets start from nothing
+    return empty_state()
+
+
+def begin_session(params: Parameters, state: State) -> State:
+    """Begin a session of the device's clock: motion and attitude of the vehicle are unknown, the mounting is kept."""
+    del params
+    state = state.copy()
+    state.filter["aligned"] = False
+    return state._replace(clock=empty_clock())
+
+
+def restart(params: Parameters, state: State) -> State:
+    """Forget everything about the mounting, because the device was refitted; the session goes on."""
+    return initial_state(params)._replace(clock=state.clock.copy())
+
+
+def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, Outcome]:
+    """Take the next samples of the session.
+
+    A drive in any pieces gives bit for bit what the drive at once gives: the same states, estimates and events.
+
+    Parameters
+    ----------
+    params
+        the preset; the same for all pieces of a drive
+    state
+        state after the samples before
+    samples
+        samples that follow; those not newer than the last one are rejected and counted
+
+    Returns
+    -------
+    State, Outcome
+        state after the samples, and what happened
+    """
+    state = state.copy()
+    rows = np.zeros((_row_limit(params, samples), _ROW))
+    events = np.zeros((_EVENTS_PER_FIX * samples.fix_row.size + 1, _ROW))
+    counts = np.zeros(len(REJECTIONS), np.int64)
+    row_count, event_count = _kernel.run(
+        as_record(params),
+        *state,
+        np.zeros(1, _kernel.EPOCH),
+        samples.t,
+        samples.f_s,
+        samples.w_s,
+        samples.fix_row,
+        samples.fix_valid,
+        samples.fix,
+        rows,
+        events,
+        counts,
+    )
+    outcome = Outcome(
+        samples=len(samples) - int(counts[0] + counts[1]),
+        fixes=int(samples.fix_valid.sum()) - int(counts[2] + counts[3]),
+        rejected={reason: int(n) for reason, n in zip(REJECTIONS, counts, strict=True) if n},
+        estimates=_estimates(rows[:row_count]),
+        events=tuple(_event(params, row) for row in events[:event_count]),
+        status=status(params, state),
+    )
+    return state, outcome
+
+
+def status(params: Parameters, state: State) -> Status:
+    """Say where the installation stands."""
+    row = np.zeros(_ROW)
+    known = _kernel.describe(
+        as_record(params)[0],
+        state.clock.copy()[0],
+        state.coarse[0],
+        state.filter[0],
+        state.settling.copy()[0],
+        state.verification[0],
+        row,
+    )
+    estimate = Estimate(float(row[0]), row[1:5].copy(), row[5:8].copy(), bool(row[10]), bool(row[11]))
+    return Status(
+        stage=Stage(int(row[8])),
+        needs=Needs(int(row[9])),
+        progress=float(row[12]),
+        estimate=estimate if known else None,
+        verification=_verification(params, state),
+        mount=_mount(params, state),
+    )
+
+
+def _row_limit(params: Parameters, samples: Samples) -> int:
+    """Most history rows these samples can give."""
+    if not len(samples):
+        return 0
+    span = float(samples.t[-1] - samples.t[0])
+    return int(min(len(samples), math.floor(span / params.report_interval) + 2))
+
+
+def _estimates(rows: Floats) -> Estimates:
+    return Estimates(
+        t=rows[:, 0].copy(),
+        quaternion=rows[:, 1:5].copy(),
+        sigma=rows[:, 5:8].copy(),
+        stage=rows[:, 8].astype(np.int64),
+        needs=rows[:, 9].astype(np.int64),
+        stable=rows[:, 10] > 0,
+        reliable=rows[:, 11] > 0,
+        progress=rows[:, 12].copy(),
+    )
+
+
+def _event(params: Parameters, row: Floats) -> Event:
+    kind = _EVENT_KINDS[int(row[1])]
+    change = kind is EventKind.ORIENTATION_CHANGED
+    state = {EventKind.VERIFICATION_STARTED: "running", EventKind.VERIFICATION_FAILED: "failed"}.get(kind, "passed")
+    test = params.verification
+    return Event(
+        t=float(row[0]),
+        kind=kind,
+        quaternion=row[2:6].copy(),
+        sigma=row[6:9].copy(),
+        verification=None
+        if change
+        else Verification(state, float(row[9]), test.duration, float(row[10]), test.limit),
+        angle=float(row[11]) if change else None,
+        reason=_REASONS[int(row[12])],
+    )
+
+
+def _verification(params: Parameters, state: State) -> Verification:
+    record, test = state.verification[0], params.verification
+    name = _VERIFICATION_STATES[int(record["state"])]
+    return Verification(name, float(record["elapsed"]), test.duration, float(record["error"]), test.limit)
+
+
+def _mount(params: Parameters, state: State) -> Mount | None:
+    record, test = state.settling[0], params.verification
+    if not record["has_mount"]:
+        return None
+    return Mount(
+        t=float(record["mount_t"]),
+        quaternion=record["mount_q_vs"].copy(),
+        sigma=record["mount_sigma"].copy(),
+        verification=Verification("passed", test.duration, test.duration, float(record["mount_error"]), test.limit),
+        suspect=bool(record["suspect"]),
+    )

@@ -1,0 +1,235 @@
+"""What is tuned, per stage: unit, meaning and thesis symbol; the presets `default` and `thesis`.
+
+Both presets run through the same code. An infinite time constant or noise switches the part it belongs to off, a zero
+prior takes a state out of the filter: the `thesis` preset is the 9-state filter of table 5.1 in exactly this sense.
+"""
+
+import math
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+DEGREE = math.pi / 180
+MILLI_G = 9.80665e-3
+
+
+@dataclass(frozen=True)
+class EpochParameters:
+    """Samples to epochs: one epoch spans the time between two fixes."""
+
+    min_epoch: float = 0.19
+    """s; faster fixes are merged until an epoch is this long"""
+    max_epoch: float = 2.6
+    """s; longer intervals between fixes are outages"""
+    max_sample_gap: float = 1.0
+    """s; a longer gap between IMU samples breaks the chain of epochs"""
+    moving_speed: float = 1.0
+    """m/s; below it the course is not trusted and the epoch says nothing about yaw"""
+    max_speed: float = 90.0
+    """m/s; faster fixes are rejected"""
+    max_acceleration: float = 15.0
+    """m/s2; a fix that needs more is a jump and is rejected"""
+    max_yaw_rate: float = 1.5
+    """rad/s; a course that turns faster is a jump"""
+    reversing_speed: float = 4.0
+    """m/s; nobody reverses faster"""
+    detect_reversing: bool = True
+    altitude_time_constant: float = 6.0
+    """s; smoothing of the altitude that gives the climb rate; 0 = plain differences (5.1)"""
+    latency_step: float = 0.2
+    """s; grid of the GPS latency hypotheses"""
+    latency_count: int = 9
+    """number of latency hypotheses, 0, 1, 2... steps; 1 = no latency"""
+
+
+@dataclass(frozen=True)
+class CoarseParameters:
+    """Coarse alignment: weighted Procrustes with accelerometer bias prior."""
+
+    bias_sigma: float = 20 * MILLI_G
+    """m/s2, prior of the accelerometer bias, per axis"""
+    correlation_time: float = 4.0
+    """s; the fit's residual (road slope, suspension, latency) stays correlated this long"""
+    min_noise: float = 0.25
+    """m/s2; the residual's standard deviation is taken to be at least this"""
+    gyro_noise_density: float = 1e-3
+    """rad2/s; square of the residual angular rate times its correlation time; infinite = gyroscope not used"""
+    interval: float = 1.0
+    """s of motion between two solutions"""
+    report_sigma: float = 30 * DEGREE
+    """rad; a solution is reported as an estimate when the largest sigma is below"""
+
+
+@dataclass(frozen=True)
+class FilterParameters:
+    """Multiplicative extended Kalman filter. Defaults here are those of the preset `default`."""
+
+    start_from_coarse: bool = True
+    """start when the coarse alignment is good; False: start at once with q_vs = 1 (thesis 5.2)"""
+    start_sigma: float = 8 * DEGREE
+    """rad; start when the largest sigma of the coarse alignment is below"""
+    acceleration_noise: float = 1.0
+    """m2/s5, sigma_a^2, power density of the jerk"""
+    speed_noise_factor: float = 1.0
+    """factor of T^3 in Q1: 1/3 for the Wiener-process acceleration (4.67), 1 for acceleration constant over an epoch"""
+    cross_noise_factor: float = 1.0
+    """factor of T^2 in Q1: 1/2 or 1, as above"""
+    yaw_rate_noise: float = 0.02
+    """rad2/s3, random walk of the yaw rate"""
+    yaw_rate_noise_per_speed: float = 0.0
+    """rad2/m2 per 0.25 s, sigma_wz^2 with the gate v_x of (4.63)"""
+    attitude_noise_per_yaw_rate: float = 0.0
+    """s2 per 0.25 s, sigma_aV^2 with the gate w_z of (4.63)"""
+    mounting_noise_per_yaw_rate: float = 0.0
+    """s2 per 0.25 s, sigma_aA^2 with the gate w_z of (4.63)"""
+    heading_noise: float = 1e-4
+    """rad2/s, random walk of the heading (side slip)"""
+    mounting_noise: float = 1e-9
+    """rad2/s, random walk of the mounting"""
+    tilt_sigma: float = 2.0 * DEGREE
+    """rad, road and suspension: stationary standard deviation of the vehicle's roll and pitch"""
+    tilt_time_constant: float = 8.0
+    """s, the vehicle's roll and pitch return to level; infinite = they do not"""
+    bias_sigma: float = 20 * MILLI_G
+    """m/s2, prior of the accelerometer bias, per axis; 0 = no such state"""
+    bias_noise: float = 1e-7
+    """m2/s5, random walk of the accelerometer bias"""
+    gyro_bias_sigma: float = 1.0 * DEGREE
+    """rad/s, prior of the gyroscope bias, per axis"""
+    accelerometer_noise: float = 0.35
+    """m/s2, sigma_accl of an epoch's mean specific force"""
+    speed_noise: float = 0.2
+    """m/s, sigma_GPS,speed per horizontal axis"""
+    climb_noise: float = 1.0
+    """m/s, sigma of the climb rate, its correlation in time allowed for"""
+    course_rate_noise: float = math.inf
+    """rad/s, sigma_GPS,w of the differenced course; infinite = not used, the velocity vector already tells"""
+    gyro_noise: float = 0.03
+    """rad/s, epoch mean of the angular rate not explained by yaw; infinite = gyroscope not used"""
+    standstill_yaw_rate_noise: float = 0.05
+    """rad/s, a standing vehicle does not turn; infinite = not used"""
+    low_speed_course: bool = False
+    """use the course below `moving_speed` too"""
+    gate: float = 4.0
+    """sigmas; noise of a measurement with a larger innovation is raised until it is this large"""
+
+
+@dataclass(frozen=True)
+class SettlingParameters:
+    """Moving average, STABLE and RELIABLE (thesis 5.3)."""
+
+    average_window: float = 25.0
+    """s, length of the moving average; infinite = `average_epochs` whatever they last"""
+    stable_rate: float = 1.6e-3
+    """rad/s; STABLE when the average turns slower"""
+    reliable_yaw_rate: float = 0.0
+    """rad/s; RELIABLE when exceeded (thesis); 0 = RELIABLE is a statement about information, below"""
+    yaw_sigma: float = 2.0 * DEGREE
+    """rad; RELIABLE below"""
+    tilt_sigma: float = 1.6 * DEGREE
+    """rad; RELIABLE below"""
+    excitation: float = 15.0
+    """m2/s3, time integral of squared horizontal acceleration needed"""
+    second_opinion_sigmas: float = 3.0
+    """filter and coarse alignment agree within so many sigmas"""
+    second_opinion_angle: float = 4.0 * DEGREE
+    """rad; and within this angle"""
+    systematic_sigma: float = 0.5 * DEGREE
+    """rad, per axis, added in square to every stated sigma: what the model leaves out (lever arm, suspension)"""
+
+
+@dataclass(frozen=True)
+class VerificationParameters:
+    """The drive test (thesis 5.4)."""
+
+    duration: float = 40.0
+    """s, t_test"""
+    limit: float = 2.5
+    """m/s"""
+    by_energy: bool = True
+    """compare the work of the forward specific force with kinetic and potential energy; False: (5.6) as printed"""
+
+
+@dataclass(frozen=True)
+class ChangeParameters:
+    """Orientation change (thesis 5.5): cumulative sum over a forgetting coarse alignment."""
+
+    window: float = 120.0
+    """s of motion, forgetting time; infinite = no detection"""
+    interval: float = 5.0
+    """s of motion between two looks"""
+    allowance: float = 10.0
+    """squared Mahalanobis distance (3 degrees of freedom) a look may show without adding evidence"""
+    threshold: float = 60.0
+    """evidence that decides"""
+    cap: float = 25.0
+    """one look adds at most this much evidence"""
+    min_angle: float = 4.0 * DEGREE
+    """rad; smaller changes are not reported"""
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """All that is tuned."""
+
+    epoch: EpochParameters = field(default_factory=EpochParameters)
+    coarse: CoarseParameters = field(default_factory=CoarseParameters)
+    filter: FilterParameters = field(default_factory=FilterParameters)
+    settling: SettlingParameters = field(default_factory=SettlingParameters)
+    verification: VerificationParameters = field(default_factory=VerificationParameters)
+    change: ChangeParameters = field(default_factory=ChangeParameters)
+    report_interval: float = 1.0
+    """s of log time between two reported estimates"""
+
+
+DEFAULT = Parameters()
+
+THESIS = Parameters(
+    epoch=EpochParameters(detect_reversing=False, altitude_time_constant=0.0, latency_count=1),
+    filter=FilterParameters(
+        start_from_coarse=False,
+        acceleration_noise=10.0,
+        speed_noise_factor=1 / 3,
+        cross_noise_factor=1 / 2,
+        yaw_rate_noise=0.0,
+        yaw_rate_noise_per_speed=5e-3,
+        attitude_noise_per_yaw_rate=1e-4,
+        mounting_noise_per_yaw_rate=0.1,
+        heading_noise=0.0,
+        mounting_noise=0.0,
+        tilt_sigma=0.0,
+        tilt_time_constant=math.inf,
+        bias_sigma=0.0,
+        bias_noise=0.0,
+        gyro_bias_sigma=0.0,
+        accelerometer_noise=math.sqrt(15.0),
+        speed_noise=math.sqrt(0.3),
+        climb_noise=math.sqrt(0.3),
+        course_rate_noise=math.sqrt(2.0),
+        gyro_noise=math.inf,
+        standstill_yaw_rate_noise=math.inf,
+        low_speed_course=True,
+        gate=math.inf,
+    ),
+    settling=SettlingParameters(average_window=math.inf, reliable_yaw_rate=0.15, systematic_sigma=0.0),
+    verification=VerificationParameters(by_energy=False),
+)
+"""Table 5.1 (variances at T = 0.25 s), n = 100, 40 s and 2.5 m/s, RELIABLE by yaw rate (thesis 5.2-5.4)."""
+
+PRESETS = {"default": DEFAULT, "thesis": THESIS}
+
+_STAGES = ("epoch", "coarse", "filter", "settling", "verification", "change")
+
+
+def as_record(params: Parameters) -> NDArray[np.void]:
+    """Give the parameters as a structured array of shape (1,) for the kernel, names `stage_parameter`."""
+    values: dict[str, float | bool | int] = {"report_interval": params.report_interval}
+    for stage in _STAGES:
+        group = getattr(params, stage)
+        values |= {f"{stage}_{item.name}": getattr(group, item.name) for item in fields(group)}
+    kinds = {bool: "?", int: "i8", float: "f8"}
+    record = np.zeros(1, np.dtype([(name, kinds[type(value)]) for name, value in values.items()]))
+    for name, value in values.items():
+        record[name] = value
+    return record

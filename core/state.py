@@ -1,0 +1,184 @@
+"""What evolves: one structured array of shape (1,) per stage, so that a state is its bytes.
+
+Angles in radians, SI units. `nan` marks what is not known yet. A record's fields are the words used in the kernel.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+RING = 84
+"""points of the integrated IMU signal kept, 0.05 s or one sample apart: the longest epoch plus the longest latency"""
+AVERAGE_EPOCHS = 100
+"""n of the moving average (thesis 5.3)"""
+MAX_LATENCIES = 9
+STATES = 15
+"""error state: speed, acceleration, yaw rate, attitude (3), mounting (3), accelerometer bias (3), gyroscope bias (3)"""
+
+CLOCK = np.dtype(
+    [
+        ("t", "f8"),  # s, last IMU sample
+        ("f_s", "f8", (3,)),  # m/s2, last sample
+        ("w_s", "f8", (3,)),  # rad/s, last sample, zero where missing
+        ("no_gyro", "f8"),  # 1 when the last sample had no angular rate
+        ("integral", "f8", (7,)),  # of f_s (m/s), w_s (rad) and no_gyro (s) since the chain began
+        ("ring_t", "f8", (RING,)),
+        ("ring", "f8", (RING, 7)),  # the integral at ring_t
+        ("ring_head", "i8"),  # slot of the newest point
+        ("ring_count", "i8"),
+        ("fix_t", "f8"),  # s, the fix that began the current epoch, nan = none
+        ("fix_speed", "f8"),
+        ("fix_course", "f8"),  # rad clockwise from north, nan = unknown
+        ("fix_altitude", "f8"),  # m, smoothed, nan = unknown
+        ("climb", "f8"),  # m/s, smoothed
+        ("altitude_t", "f8"),  # s, last altitude
+        ("altitude", "f8"),  # m, smoothed, nan = unknown
+        ("position_t", "f8"),  # s, last position, for receivers that give no velocity
+        ("latitude", "f8"),
+        ("longitude", "f8"),
+        ("valid_fix_t", "f8"),  # s, last valid fix, nan = none in this session
+        ("motion_t", "f8"),  # s, last time in motion, nan = never in this session
+        ("travel_course", "f8"),  # rad, last course in motion
+        ("slow_since", "?"),  # the vehicle was slow since then
+        ("reversing", "?"),
+        ("next_report", "f8"),  # s
+    ]
+)
+
+COARSE = np.dtype(
+    [
+        ("time", "f8"),  # s, sum of the weights (epoch lengths)
+        ("k", "f8", (3,)),  # sum of kinematic specific force k_v
+        ("kk", "f8", (3, 3)),
+        ("f", "f8", (MAX_LATENCIES, 3)),  # sum of f_s, per latency hypothesis
+        ("fk", "f8", (MAX_LATENCIES, 3, 3)),  # sum of f_s k_v'
+        ("ff", "f8", (MAX_LATENCIES,)),  # sum of |f_s|^2
+        ("gyro_time", "f8"),
+        ("r", "f8"),  # sum of the yaw rate from the course
+        ("rr", "f8"),
+        ("w", "f8", (MAX_LATENCIES, 3)),  # sum of w_s
+        ("wr", "f8", (MAX_LATENCIES, 3)),
+        ("ww", "f8", (MAX_LATENCIES,)),
+        ("noise_density", "f8"),  # (m/s2)^2 s, residual variance times correlation time
+        ("hypothesis", "i8"),  # the latency in use
+        ("latency", "f8"),  # s, refined between hypotheses
+        ("solved_time", "f8"),  # value of `time` at the last solution, nan = no solution
+        ("q_vs", "f8", (4,)),
+        ("bias", "f8", (3,)),  # m/s2, sensor frame
+        ("covariance", "f8", (3, 3)),  # rad2, about the vehicle axes
+    ]
+)
+
+FILTER = np.dtype(
+    [
+        ("running", "?"),
+        ("aligned", "?"),  # heading was started from the course
+        ("speed", "f8"),
+        ("acceleration", "f8"),
+        ("yaw_rate", "f8"),
+        ("q_nv", "f8", (4,)),
+        ("q_vs", "f8", (4,)),
+        ("bias", "f8", (3,)),  # m/s2, accelerometer, sensor frame
+        ("gyro_bias", "f8", (3,)),  # rad/s
+        ("covariance", "f8", (STATES, STATES)),
+    ]
+)
+
+SETTLING = np.dtype(
+    [
+        ("ring", "f8", (AVERAGE_EPOCHS, 4)),
+        ("head", "i8"),
+        ("count", "i8"),
+        ("average", "f8", (4,)),
+        ("forward_excitation", "f8"),  # m2/s3
+        ("lateral_excitation", "f8"),  # m2/s3
+        ("stable", "?"),
+        ("reliable", "?"),
+        ("agrees", "?"),  # second opinion
+        ("progress", "f8"),
+        ("confirmed", "?"),
+        ("mount_t", "f8"),
+        ("mount_q_vs", "f8", (4,)),
+        ("mount_sigma", "f8", (3,)),
+        ("mount_error", "f8"),  # m/s, of its drive test
+        ("has_mount", "?"),
+        ("suspect", "?"),
+    ]
+)
+
+VERIFICATION = np.dtype(
+    [
+        ("state", "i8"),  # 0 idle, 1 running, 2 passed, 3 failed
+        ("q_vs", "f8", (4,)),  # candidate
+        ("bias", "f8", (3,)),  # m/s2, that belongs to the candidate
+        ("sigma", "f8", (3,)),
+        ("elapsed", "f8"),  # s of driving
+        ("distance", "f8"),  # m
+        ("excess", "f8"),  # m2/s2 or m/s: integrated specific force minus what the GPS shows
+        ("error", "f8"),  # m/s
+    ]
+)
+
+CHANGE = np.dtype(
+    [
+        ("evidence", "f8"),
+        ("looked_time", "f8"),  # value of the window's `time` at the last look
+    ]
+)
+
+
+class State(NamedTuple):
+    """State of one device's estimator: structured arrays of shape (1,)."""
+
+    clock: NDArray[np.void]
+    coarse: NDArray[np.void]
+    window: NDArray[np.void]
+    """forgetting coarse alignment for the orientation change, a `COARSE` record"""
+    filter: NDArray[np.void]
+    settling: NDArray[np.void]
+    verification: NDArray[np.void]
+    change: NDArray[np.void]
+
+    def copy(self) -> "State":
+        """Give an independent copy."""
+        return State(*(part.copy() for part in self))
+
+
+LAYOUT = State(CLOCK, COARSE, COARSE, FILTER, SETTLING, VERIFICATION, CHANGE)  # type: ignore[arg-type]
+"""The dtype of each part."""
+
+
+def empty_clock() -> NDArray[np.void]:
+    """Clock at the beginning of a session: nothing known."""
+    clock = np.zeros(1, CLOCK)
+    for name in (
+        "t", "fix_t", "fix_speed", "fix_course", "fix_altitude", "altitude_t", "altitude", "position_t",
+        "latitude", "longitude", "valid_fix_t", "motion_t", "travel_course", "next_report",
+    ):  # fmt: skip
+        clock[name] = np.nan
+    return clock
+
+
+def empty_coarse() -> NDArray[np.void]:
+    """Accumulators of a coarse alignment that has seen nothing."""
+    coarse = np.zeros(1, COARSE)
+    coarse["solved_time"] = np.nan
+    coarse["q_vs"][0, 0] = 1.0
+    return coarse
+
+
+def empty_state() -> State:
+    """State of a device nothing is known of."""
+    state = State(
+        empty_clock(),
+        empty_coarse(),
+        empty_coarse(),
+        np.zeros(1, FILTER),
+        np.zeros(1, SETTLING),
+        np.zeros(1, VERIFICATION),
+        np.zeros(1, CHANGE),
+    )
+    state.filter["q_nv"][0, 0] = state.filter["q_vs"][0, 0] = 1.0
+    state.settling["average"][0, 0] = 1.0
+    return state
