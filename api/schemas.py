@@ -1,0 +1,288 @@
+"""The API's documents. Names, units and meanings are fixed by the contract; angles in degrees, else SI, times UTC."""
+
+from datetime import datetime
+from typing import Annotated, Any, Generic, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+Role = Literal["device", "installer", "manager", "admin"]
+StageName = Literal["waiting", "aligning", "settling", "verifying", "confirmed"]
+Need = Literal["data", "gps_fix", "motion", "turn", "accelerate_or_brake", "time"]
+MountStatus = Literal["in_force", "suspect", "superseded"]
+VerificationState = Literal["idle", "running", "passed", "failed"]
+ChunkState = Literal["applied", "waiting"]
+AlertKind = Literal[
+    "orientation_changed",
+    "device_loose",
+    "calibration_stalled",
+    "verification_failing",
+    "gps_lost",
+    "sensor_fault",
+    "device_silent",
+    "clock_fault",
+]
+Severity = Literal["info", "warning", "critical"]
+AlertState = Literal["open", "acknowledged", "resolved"]
+
+Vector3 = tuple[float, float, float]
+Vector4 = tuple[float, float, float, float]
+Matrix3 = tuple[Vector3, Vector3, Vector3]
+
+DeviceId = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9._:-]{0,63}$", max_length=64)]
+SessionName = Annotated[str, StringConstraints(pattern=r"^[\x21-\x7e]{1,128}$", max_length=128)]
+Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=128)]
+Notes = Annotated[str, StringConstraints(max_length=4000)]
+
+T = TypeVar("T")
+
+
+class Document(BaseModel):
+    """Base of the API's documents: what is not described is refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Page(Document, Generic[T]):
+    """One page of a list."""
+
+    items: list[T]
+    next_cursor: str | None = Field(description="Give it as `cursor` to get the next page; null on the last page.")
+
+
+# ---------------------------------------------------------------- problems
+
+
+class ProblemItem(Document):
+    """One thing that is wrong, and where."""
+
+    pointer: str | None = Field(None, description="JSON pointer into the request: `/body/...`, `/query/...`, `/path/...`.")
+    line: int | None = Field(None, description="Line of the log, from 1.")
+    column: str | int | None = Field(None, description="Column of the log: its name, or its number from 1.")
+    expected: str | None = None
+    message: str
+
+
+class Problem(Document):
+    """RFC 9457 problem details."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    errors: list[ProblemItem] = Field(default_factory=list)
+
+
+# ---------------------------------------------------------------- mounting
+
+
+class Angles(Document):
+    """Roll, pitch, yaw of the device in the vehicle, degrees, intrinsic z-y'-x''."""
+
+    roll: float
+    pitch: float
+    yaw: float
+
+
+class Verification(Document):
+    """The drive test."""
+
+    state: VerificationState
+    elapsed_s: float = Field(description="Driving tested so far, s.")
+    duration_s: float = Field(description="Driving the test takes, s.")
+    error_mps: float | None = Field(description="Speed error of the test so far, m/s.")
+    limit_mps: float = Field(description="Largest error that passes, m/s.")
+
+
+class Estimate(Document):
+    """The estimate now."""
+
+    t: float = Field(description="Session clock, s.")
+    quaternion: Vector4 = Field(description="q_vs, scalar first.")
+    matrix: Matrix3 = Field(description="R(q_vs), rows: f_v = R f_s.")
+    angles_deg: Angles
+    sigma_deg: Vector3 = Field(description="1 sigma about the vehicle's x, y and z axes.")
+    stable: bool
+    reliable: bool
+
+
+class Mount(Document):
+    """A confirmed mounting."""
+
+    id: int = Field(description="Number of the mounting, from 1 for each device.")
+    quaternion: Vector4
+    matrix: Matrix3
+    angles_deg: Angles
+    sigma_deg: Vector3
+    confirmed_at: datetime
+    status: MountStatus
+    verification: Verification
+
+
+class Installation(Document):
+    """Where an installation stands."""
+
+    device_id: str
+    stage: StageName
+    since: datetime = Field(description="When this stage began.")
+    progress: float = Field(ge=0, le=1)
+    needs: list[Need]
+    hint: str = Field(description="What is missing now, in words for the driver or installer.")
+    estimate: Estimate | None
+    verification: Verification
+    mount: Mount | None = Field(description="The mounting in force, or the suspect one.")
+    open_alerts: int
+    last_data_at: datetime | None = Field(description="When the last data came in.")
+    revision: int = Field(description="Rises with every change.")
+
+
+class AngleColumns(Document):
+    """Angles as columns, degrees."""
+
+    roll: list[float]
+    pitch: list[float]
+    yaw: list[float]
+
+
+class Estimates(Document):
+    """Angle history, columns of equal length in time order."""
+
+    session: list[str]
+    t: list[float] = Field(description="Session clock, s.")
+    time: list[datetime]
+    quaternion: list[Vector4]
+    angles_deg: AngleColumns
+    sigma_deg: list[Vector3]
+    stage: list[StageName]
+    stable: list[bool]
+    reliable: list[bool]
+    progress: list[float]
+
+
+# ---------------------------------------------------------------- devices and chunks
+
+
+class DeviceDraft(Document):
+    """A device to register."""
+
+    id: DeviceId | None = Field(None, description="Chosen at random when left out.")
+    name: Name
+    vehicle: Name | None = None
+    notes: Notes | None = None
+
+
+class DevicePatch(Document):
+    """What to change of a device; what is left out stays."""
+
+    name: Name = Field("", description="Not null: a device always has a name.")
+    vehicle: Name | None = None
+    notes: Notes | None = None
+
+
+class Device(Document):
+    """A device, with a summary of its installation."""
+
+    id: str
+    name: str
+    vehicle: str | None
+    notes: str | None
+    created_at: datetime
+    stage: StageName
+    progress: float
+    mount_status: MountStatus | None
+    open_alerts: int
+    last_data_at: datetime | None
+    revision: int
+
+
+class RegisteredDevice(Document):
+    """A device just registered, with its key, which is shown only now."""
+
+    device: Device
+    key: str
+
+
+class Chunk(Document):
+    """Receipt of a chunk."""
+
+    session: str
+    seq: int
+    samples: int = Field(description="IMU samples used; of a waiting chunk, read.")
+    fixes: int = Field(description="GPS fixes used; of a waiting chunk, read.")
+    rejected: dict[str, int] = Field(description="Samples and fixes not used, by reason.")
+    duplicate: bool
+    state: ChunkState
+    notices: list[str] = Field(description="What the sender should know, such as columns that were ignored.")
+
+
+class Upload(Document):
+    """Answer to an upload."""
+
+    chunk: Chunk
+    installation: Installation
+
+
+# ---------------------------------------------------------------- alerts, stream, sessions
+
+
+class Alert(Document):
+    """A finding somebody should know about."""
+
+    id: int
+    device_id: str
+    kind: AlertKind
+    severity: Severity
+    state: AlertState
+    opened_at: datetime
+    updated_at: datetime
+    count: int = Field(description="How often the condition was seen while the alert was open.")
+    message: str
+    data: dict[str, Any]
+    acknowledged_at: datetime | None
+    acknowledged_by: str | None
+    acknowledge_note: str | None
+    resolved_at: datetime | None
+    resolved_by: str | None
+    resolve_note: str | None
+
+
+class AlertNote(Document):
+    """A remark by whoever acknowledges or resolves an alert."""
+
+    note: Notes | None = None
+
+
+class DeviceChange(Document):
+    """Data of the stream's `device` event."""
+
+    device_id: str
+    change: Literal["registered", "edited", "removed"]
+    device: Device | None = Field(description="Null when it was removed.")
+
+
+class FleetSummary(Document):
+    """Counts over the devices one may see."""
+
+    devices: int
+    stages: dict[StageName, int]
+    open_alerts: int
+    alerts: dict[AlertKind, dict[Severity, int]] = Field(description="Open alerts by kind and severity.")
+
+
+class SignIn(Document):
+    """A key to sign in with."""
+
+    key: Annotated[str, StringConstraints(min_length=1, max_length=512)]
+
+
+class SignedIn(Document):
+    """Who is signed in."""
+
+    role: Role
+    name: str
+    device_id: str | None
+
+
+class Health(Document):
+    """State of the service."""
+
+    status: Literal["ok", "starting", "unavailable"]

@@ -1,0 +1,167 @@
+"""The estimator of one device during one transaction: loaded once, advanced chunk by chunk, saved once."""
+
+import logging
+from datetime import datetime, timedelta
+
+import numpy as np
+
+import core
+from api import schemas
+from api.formats.log import Reading
+from api.services import alerting, history, presenting, publishing
+from api.services.context import Context
+from api.services.errors import NotFoundError, UnusableError
+from storage import devices, installations, mounts
+from storage.database import WriteSession
+from storage.installations import Installation
+from storage.sessions import Session
+
+log = logging.getLogger(__name__)
+
+LONGEST_TIME = 1e10
+"""s, largest reading of a device's clock that is believed: three centuries"""
+
+STAGES = {stage.word: stage for stage in core.Stage}
+
+
+class Calibration:
+    """A device's installation while it is being changed; holds the device's lock."""
+
+    def __init__(self, tx: WriteSession, context: Context, device_id: str, row: Installation) -> None:
+        self.tx = tx
+        self.context = context
+        self.device_id = device_id
+        self.row = row
+        self.now = context.clock()
+        self._state: core.State | None = None
+
+    @classmethod
+    def open(cls, tx: WriteSession, context: Context, device_id: str) -> "Calibration":
+        """Lock the device and load its installation."""
+        device_pk = devices.lock(tx, device_id)
+        row = None if device_pk is None else installations.get(tx, device_pk)
+        if row is None:
+            raise NotFoundError("There is no such device.")
+        return cls(tx, context, device_id, row)
+
+    @property
+    def state(self) -> core.State:
+        """The estimator's state."""
+        if self._state is None:
+            self._state = self._load()
+        return self._state
+
+    def _load(self) -> core.State:
+        if self.row.snapshot is None:
+            return core.initial_state(self.context.params)
+        try:
+            return core.decode(self.row.snapshot)
+        except core.SnapshotError as error:
+            log.warning("device %s: calibration starts anew, its snapshot cannot be read: %s", self.device_id, error)
+            return core.initial_state(self.context.params)
+
+    def begin(self, session: Session) -> None:
+        """The device was switched on: a new session, a new clock."""
+        self._state = core.begin_session(self.context.params, self.state)
+        self.row = self.row._replace(session_pk=session.pk)
+
+    def restart(self) -> None:
+        """The device was refitted on purpose: forget the mounting, keep the history."""
+        self._state = core.restart(self.context.params, self.state)
+        mounts.supersede(self.tx, self.row.device_pk)
+        alerting.end(self.tx, self.row.device_pk, "The calibration was restarted.", self.now)
+        self._show(core.status(self.context.params, self.state))
+        self.row = self.row._replace(since_session_pk=None, since_t=None, since_at=self.now)
+
+    def apply(self, session: Session, reading: Reading, received_at: datetime) -> tuple[Session, core.Outcome | None]:
+        """Advance by one chunk of the current session; give the session as it is then, and what the chunk did.
+
+        Raises
+        ------
+        UnusableError
+            the samples cannot be used; nothing has changed.
+        """
+        session = session._replace(context=reading.context)
+        if len(reading.samples) == 0:
+            return session, None
+        t_last = last_time(reading.samples)
+        try:
+            state, outcome = core.advance(self.context.params, self.state, reading.samples)
+        except core.SampleError as error:
+            raise UnusableError(str(error)) from error
+        self._state = state
+        began = received_at - timedelta(seconds=t_last)
+        session = session._replace(started_at=min(session.started_at or began, began))
+        self._record(session, outcome, t_last, received_at)
+        return session, outcome
+
+    def _record(self, session: Session, outcome: core.Outcome, t_last: float, received_at: datetime) -> None:
+        """Keep what a chunk brought: history, mountings, alerts, status."""
+        before = STAGES[self.row.stage]
+        history.append(self.tx, self.row.device_pk, session.pk, outcome.estimates, before, received_at)
+        for event in outcome.events:
+            self._follow(session, event)
+        since = stage_began(before, outcome, t_last)
+        if since is not None:
+            self.row = self.row._replace(since_session_pk=session.pk, since_t=since, since_at=self.now)
+        self._show(outcome.status)
+        self.row = self.row._replace(last_data_at=max(received_at, self.row.last_data_at or received_at))
+
+    def _follow(self, session: Session, event: core.Event) -> None:
+        """Turn an event into a mounting or an alert."""
+        device_pk = self.row.device_pk
+        if event.kind == core.EventKind.CONFIRMED:
+            self._confirm(session, event)
+            alerting.end(self.tx, device_pk, "A new mounting was confirmed.", self.now)
+        if event.kind == core.EventKind.ORIENTATION_CHANGED:
+            mounts.suspect(self.tx, device_pk)
+        current = mounts.current(self.tx, device_pk)
+        where = alerting.Where(session.name, None if current is None else current.n)
+        alerting.raise_for(self.tx, device_pk, event, where, self.now)
+
+    def _confirm(self, session: Session, event: core.Event) -> None:
+        if event.quaternion is None or event.sigma is None or event.verification is None:
+            raise ValueError("a confirmed mounting without its values")
+        mounts.add(
+            self.tx,
+            self.row.device_pk,
+            session.pk,
+            event.t,
+            event.quaternion.tolist(),
+            presenting.degrees(event.sigma),
+            presenting.verification(event.verification),
+        )
+
+    def _show(self, status: core.Status) -> None:
+        self.row = self.row._replace(
+            stage=status.stage.word, status=presenting.status(status), revision=self.row.revision + 1
+        )
+
+    def save(self) -> None:
+        """Store the installation and tell the live stream, if anything has changed."""
+        if self._state is None:
+            return
+        self.row = self.row._replace(snapshot=core.encode(self._state))
+        installations.save(self.tx, self.row)
+        publishing.installation_changed(self.tx, self.shown(), self.now)
+
+    def shown(self) -> schemas.Installation:
+        """Give the installation resource."""
+        return publishing.show(self.tx, self.row, self.device_id)
+
+
+def last_time(samples: core.Samples) -> float:
+    """Give the last time of samples, refusing a clock that no device can have."""
+    if float(np.abs(samples.t[[0, -1]]).max()) > LONGEST_TIME:
+        raise UnusableError(f"The time is out of range: expected at most {LONGEST_TIME:.0e} s.")
+    return float(samples.t[-1])
+
+
+def stage_began(before: core.Stage, outcome: core.Outcome, t_last: float) -> float | None:
+    """Give the time at which the stage now reached began, None when it began before these samples."""
+    t, stage = outcome.estimates.t, outcome.estimates.stage
+    other = np.flatnonzero(stage != outcome.status.stage)
+    first = int(other[-1]) + 1 if other.size else 0
+    if other.size == 0 and before == outcome.status.stage:
+        return None
+    return float(t[first]) if first < t.size else t_last

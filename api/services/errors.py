@@ -1,0 +1,75 @@
+"""What a service refuses to do, as values of one family; `api/errors.py` says which HTTP status each becomes."""
+
+
+class ServiceError(Exception):
+    """Base: `detail` is a sentence for the caller, `kind` the last part of the problem's type."""
+
+    kind = "error"
+    title = "The request was refused"
+
+    def __init__(self, detail: str) -> None:
+        super().__init__(detail)
+        self.detail = detail
+
+
+class UnauthenticatedError(ServiceError):
+    """No key, or one that is not known."""
+
+    kind = "unauthenticated"
+    title = "A valid key is needed"
+
+
+class ForbiddenError(ServiceError):
+    """The key does not allow this."""
+
+    kind = "forbidden"
+    title = "The key does not allow this"
+
+
+class NotFoundError(ServiceError):
+    """There is no such thing."""
+
+    kind = "not-found"
+    title = "Not found"
+
+
+class ConflictError(ServiceError):
+    """It is taken, or contradicts what is stored."""
+
+    kind = "conflict"
+    title = "The request contradicts what is stored"
+
+
+class ChunkConflictError(ConflictError):
+    """Other bytes came in under this session and number before."""
+
+    kind = "chunk-conflict"
+    title = "Another chunk has this number"
+
+
+class SequencePassedError(ConflictError):
+    """The gap this chunk would have filled was declared lost, and time went on."""
+
+    kind = "sequence-passed"
+    title = "The chunk comes too late"
+
+
+class SessionEndedError(ConflictError):
+    """A newer session of the device has begun; this chunk would run time backwards."""
+
+    kind = "session-ended"
+    title = "The session has ended"
+
+
+class UnusableError(ServiceError):
+    """The samples cannot be used."""
+
+    kind = "unusable-samples"
+    title = "The samples cannot be used"
+
+
+class CursorError(ServiceError):
+    """A cursor this service did not give."""
+
+    kind = "invalid-cursor"
+    title = "The cursor is not valid"

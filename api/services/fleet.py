@@ -1,0 +1,111 @@
+"""Devices: register, list, edit, remove; the counts over all of them."""
+
+import secrets
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy.exc import IntegrityError
+
+from api import schemas
+from api.services import access, presenting, publishing
+from api.services.access import Principal, Role
+from api.services.calibration import STAGES, Calibration
+from api.services.context import Context
+from api.services.errors import ConflictError, NotFoundError
+from core import Stage, initial_state, status
+from storage import alerts, devices, installations, keys
+from storage.database import ReadSession, WriteSession
+
+UNKNOWN_DEVICE = "There is no such device."
+
+
+def register(context: Context, draft: schemas.DeviceDraft) -> schemas.RegisteredDevice:
+    """Register a device and make its key."""
+    device_id = draft.id or f"dev-{secrets.token_hex(6)}"
+    key = access.new_key()
+    try:
+        with context.database.write() as tx:
+            device = _add(tx, context, device_id, draft, key)
+    except IntegrityError as error:
+        raise ConflictError(f"There is a device {device_id} already.") from error
+    context.wake()
+    return schemas.RegisteredDevice(device=device, key=key)
+
+
+def _add(tx: WriteSession, context: Context, device_id: str, draft: schemas.DeviceDraft, key: str) -> schemas.Device:
+    now = context.clock()
+    pk = devices.add(tx, device_id, draft.name, draft.vehicle, draft.notes, now)
+    installations.add(tx, _fresh(context, pk, now))
+    keys.add(tx, access.digest(key), Role.DEVICE.word, device_id, now, device_pk=pk)
+    return publishing.device_changed(tx, device_id, "registered", now)
+
+
+def _fresh(context: Context, device_pk: int, now: datetime) -> installations.Installation:
+    """Give the installation of a device that has sent nothing yet."""
+    shown = presenting.status(status(context.params, initial_state(context.params)))
+    return installations.Installation(
+        device_pk, None, None, Stage.WAITING.word, None, None, now, shown, last_data_at=None, revision=0
+    )
+
+
+def edit(context: Context, device_id: str, changes: dict[str, Any]) -> schemas.Device:
+    """Change the texts of a device."""
+    now = context.clock()
+    with context.database.write() as tx:
+        devices.edit(tx, locked(tx, device_id), changes)
+        device = publishing.device_changed(tx, device_id, "edited", now)
+    context.wake()
+    return device
+
+
+def remove(context: Context, device_id: str) -> None:
+    """Remove a device with its key, its history and its alerts."""
+    with context.database.write() as tx:
+        devices.remove(tx, locked(tx, device_id))
+        publishing.device_removed(tx, device_id, context.clock())
+    context.wake()
+
+
+def locked(tx: WriteSession, device_id: str) -> int:
+    """Lock a device and give its number."""
+    pk = devices.lock(tx, device_id)
+    if pk is None:
+        raise NotFoundError(UNKNOWN_DEVICE)
+    return pk
+
+
+def number(tx: ReadSession, device_id: str) -> int:
+    """Give the number of a device."""
+    pk = devices.exists(tx, device_id)
+    if pk is None:
+        raise NotFoundError(UNKNOWN_DEVICE)
+    return pk
+
+
+def restart(context: Context, device_id: str) -> schemas.Installation:
+    """Begin the calibration of a refitted device anew."""
+    with context.database.write() as tx:
+        calibration = Calibration.open(tx, context, device_id)
+        calibration.restart()
+        calibration.save()
+        shown = calibration.shown()
+    context.wake()
+    return shown
+
+
+def summary(context: Context, principal: Principal) -> schemas.FleetSummary:
+    """Count devices by stage and open alerts by kind and severity; a device counts itself alone."""
+    with context.database.read() as tx:
+        stages = devices.stages(tx, principal.device_pk)
+        counts = alerts.counts(tx, principal.device_pk)
+    by_kind: dict[str, dict[str, int]] = {}
+    for kind, severity, count in counts:
+        by_kind.setdefault(kind, {})[severity] = count
+    return schemas.FleetSummary.model_validate(
+        {
+            "devices": sum(stages.values()),
+            "stages": {stage: stages.get(stage, 0) for stage in STAGES},
+            "open_alerts": sum(count for _, _, count in counts),
+            "alerts": by_kind,
+        }
+    )

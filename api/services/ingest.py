@@ -1,0 +1,207 @@
+"""The path of an upload.
+
+Chunks of a session take effect in the order of their numbers, exactly once. One that is ahead of its turn waits,
+durably; the gap before it is declared lost when the oldest waiting chunk has waited `gap_timeout`, when
+`max_waiting_chunks` wait, or when a newer session begins. Then time goes on: a chunk for a gap declared lost, like one of
+a session that has ended, is refused, because applying it would run time backwards.
+"""
+
+import logging
+from datetime import timedelta
+from typing import NamedTuple
+
+from api import schemas
+from api.formats import Limits, ParsedLog, parse
+from api.services.calibration import Calibration, last_time
+from api.services.context import Context
+from api.services.errors import (
+    ChunkConflictError,
+    NotFoundError,
+    SequencePassedError,
+    SessionEndedError,
+    UnusableError,
+)
+from storage import chunks, sessions
+from storage.chunks import APPLIED, WAITING, Body, Receipt, Waiting
+from storage.sessions import Session
+
+log = logging.getLogger(__name__)
+
+
+class Chunk(NamedTuple):
+    """A chunk as it came in."""
+
+    session: str
+    seq: int
+    body: Body
+
+
+def receive(context: Context, device_id: str, chunk: Chunk) -> schemas.Upload:
+    """Take in a chunk: when this returns it is durable, and applied exactly once if it was its turn.
+
+    Raises
+    ------
+    FormatError, UnusableError
+        the chunk cannot be read or used.
+    ConflictError
+        another chunk has its number, or it comes too late.
+    NotFoundError
+        no such device.
+    """
+    parsed = read(context, chunk.body)
+    with context.database.write() as tx:
+        calibration = Calibration.open(tx, context, device_id)
+        session = sessions.find_or_add(tx, calibration.row.device_pk, chunk.session, calibration.now)
+        known = chunks.find(tx, session.pk, chunk.seq)
+        if known is None:
+            receipt = take(calibration, session, chunk, parsed)
+            calibration.save()
+        else:
+            receipt = same(known, parsed)
+        answer = schemas.Upload(
+            chunk=_present(chunk.session, receipt, known is not None, parsed), installation=calibration.shown()
+        )
+    context.wake()
+    return answer
+
+
+def read(context: Context, body: Body) -> ParsedLog:
+    """Read the bytes of a chunk; pure."""
+    settings = context.settings
+    limits = Limits(settings.max_chunk_bytes, settings.max_decoded_bytes)
+    return parse(body.body, body.content_type, body.content_encoding, limits, body.course)
+
+
+def same(known: Receipt, parsed: ParsedLog) -> Receipt:
+    """Give the receipt of a chunk that comes once more, if it is the same one."""
+    if known.digest != parsed.digest:
+        raise ChunkConflictError(f"Chunk {known.seq} of this session came in before, with other content.")
+    return known
+
+
+def take(calibration: Calibration, session: Session, chunk: Chunk, parsed: ParsedLog) -> Receipt:
+    """Take in a new chunk: apply it, and what waited for it, if it is its turn; else let it wait."""
+    _refuse_late(calibration, session, chunk.seq)
+    receipt = _receipt(calibration, session, chunk, parsed)
+    if chunk.seq == session.next_seq:
+        _enter(calibration, session)
+        receipt = _apply(calibration, session, receipt, parsed)
+        chunks.add(calibration.tx, receipt)
+    else:
+        chunks.add(calibration.tx, receipt, chunk.body)
+    catch_up(calibration)
+    return chunks.find(calibration.tx, session.pk, chunk.seq) or receipt
+
+
+def catch_up(calibration: Calibration) -> None:
+    """Apply the waiting chunks whose turn has come, declaring the gaps that have been open long enough."""
+    for session_pk in chunks.sessions_waiting(calibration.tx, calibration.row.device_pk):
+        _drain(calibration, session_pk, declare_gaps=False)
+
+
+def close_gaps(context: Context) -> None:
+    """Declare the gaps that have been open too long, on every device; called now and then."""
+    with context.database.read() as tx:
+        overdue = chunks.devices_waiting_since(tx, context.clock() - _gap_timeout(context))
+    for device_id in overdue:
+        try:
+            _close_gaps_of(context, device_id)
+        except NotFoundError:
+            continue  # removed meanwhile
+        context.wake()
+
+
+def _close_gaps_of(context: Context, device_id: str) -> None:
+    with context.database.write() as tx:
+        calibration = Calibration.open(tx, context, device_id)
+        catch_up(calibration)
+        calibration.save()
+
+
+def _refuse_late(calibration: Calibration, session: Session, seq: int) -> None:
+    current = calibration.row.session_pk
+    if current is not None and session.pk < current:
+        raise SessionEndedError("A newer session of this device has begun; do not send this chunk again.")
+    if seq < session.next_seq:
+        raise SequencePassedError(
+            f"The gap at chunk {seq} was declared lost and later chunks were applied; do not send this chunk again."
+        )
+
+
+def _receipt(calibration: Calibration, session: Session, chunk: Chunk, parsed: ParsedLog) -> Receipt:
+    """Make the receipt of a chunk that waits; what cannot be used is refused now rather than when its turn comes."""
+    samples, rejected, _ = parsed.samples(session.context)
+    last_time(samples)
+    fixes = int(samples.fix_valid.sum())
+    return Receipt(session.pk, chunk.seq, parsed.digest, WAITING, len(samples), fixes, rejected, calibration.now)
+
+
+def _enter(calibration: Calibration, session: Session) -> None:
+    """Make this the current session; what waits in the ones before it is applied first, their gaps are lost."""
+    if calibration.row.session_pk == session.pk:
+        return
+    for session_pk in chunks.sessions_waiting(calibration.tx, calibration.row.device_pk):
+        if session_pk < session.pk:
+            _drain(calibration, session_pk, declare_gaps=True)
+    calibration.begin(session)
+
+
+def _drain(calibration: Calibration, session_pk: int, declare_gaps: bool) -> None:
+    """Apply what waits in a session, in order, up to a gap that stays open."""
+    while (waiting := chunks.waiting(calibration.tx, session_pk)).first_seq is not None:
+        session = sessions.get(calibration.tx, session_pk)
+        if not (declare_gaps or waiting.first_seq == session.next_seq or _overdue(calibration, waiting)):
+            return
+        _enter(calibration, session)
+        _apply_waiting(calibration, session, waiting.first_seq)
+
+
+def _overdue(calibration: Calibration, waiting: Waiting) -> bool:
+    context = calibration.context
+    too_many = waiting.count >= context.settings.max_waiting_chunks
+    return too_many or (waiting.since is not None and waiting.since <= calibration.now - _gap_timeout(context))
+
+
+def _gap_timeout(context: Context) -> timedelta:
+    return timedelta(seconds=context.settings.gap_timeout)
+
+
+def _apply_waiting(calibration: Calibration, session: Session, seq: int) -> None:
+    """Apply a chunk that waited; one that turns out unusable is passed over and counted."""
+    receipt, body = chunks.find_waiting(calibration.tx, session.pk, seq)
+    try:
+        receipt = _apply(calibration, session, receipt, read(calibration.context, body))
+    except UnusableError as error:
+        log.warning("device %s: chunk %d of %s is unusable: %s", calibration.device_id, seq, session.name, error)
+        receipt = receipt._replace(state=APPLIED, samples=0, fixes=0, rejected={"unusable": receipt.samples})
+        sessions.save(calibration.tx, session._replace(next_seq=seq + 1))
+    chunks.settle(calibration.tx, receipt)
+
+
+def _apply(calibration: Calibration, session: Session, receipt: Receipt, parsed: ParsedLog) -> Receipt:
+    """Advance the estimator by one chunk and the session by one number."""
+    reading = parsed.samples(session.context)
+    session, outcome = calibration.apply(session, reading, receipt.received_at)
+    sessions.save(calibration.tx, session._replace(next_seq=receipt.seq + 1))
+    if outcome is None:
+        return receipt._replace(state=APPLIED)
+    rejected = {
+        reason: reading.rejected.get(reason, 0) + outcome.rejected.get(reason, 0)
+        for reason in reading.rejected | outcome.rejected
+    }
+    return receipt._replace(state=APPLIED, samples=outcome.samples, fixes=outcome.fixes, rejected=rejected)
+
+
+def _present(session: str, receipt: Receipt, duplicate: bool, parsed: ParsedLog) -> schemas.Chunk:
+    return schemas.Chunk.model_validate(
+        {
+            "session": session,
+            "seq": receipt.seq,
+            "samples": receipt.samples,
+            "fixes": receipt.fixes,
+            "rejected": receipt.rejected,
+            "duplicate": duplicate,
+            "state": receipt.state,
+            "notices": parsed.notices,
+        }
+    )

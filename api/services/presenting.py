@@ -1,0 +1,143 @@
+"""Rows of the tables and values of the estimator as the API's documents: radians become degrees here."""
+
+from collections.abc import Iterable
+from datetime import datetime, timedelta
+from typing import Any
+
+import numpy as np
+
+import core
+from api import schemas
+from storage import alerts, devices, installations, mounts
+
+HINTS = {
+    "data": "Waiting for data: switch the device on and check that it can send.",
+    "gps_fix": "Waiting for a GPS fix: drive, or park, under open sky.",
+    "motion": "Drive off: the vehicle has to move.",
+    "turn": "Take a few turns to the left and to the right.",
+    "accelerate_or_brake": "Accelerate and brake firmly a few times on a straight road.",
+    "time": "Keep driving as usual.",
+}
+"""What a driver can do about each need, in the order in which it is told."""
+NOTHING_NEEDED = "The mounting is confirmed. Nothing needs to be done."
+
+
+def hint(stage: str, needs: Iterable[str]) -> str:
+    """Give the needs in words a driver or installer can follow."""
+    wanted = set(needs)
+    sentences = [HINTS[need] for need in HINTS if need in wanted]
+    if sentences:
+        return " ".join(sentences)
+    return NOTHING_NEEDED if stage == "confirmed" else HINTS["time"]
+
+
+def status(now: core.Status) -> dict[str, Any]:
+    """Give what is stored of the estimator's status: the part of the installation that it decides."""
+    return {
+        "progress": now.progress,
+        "needs": list(now.needs.words),
+        "estimate": None if now.estimate is None else estimate(now.estimate),
+        "verification": verification(now.verification),
+    }
+
+
+def estimate(now: core.Estimate) -> dict[str, Any]:
+    """Give an estimate, without what follows from its quaternion."""
+    return {
+        "t": now.t,
+        "quaternion": now.quaternion.tolist(),
+        "sigma_deg": degrees(now.sigma),
+        "stable": bool(now.stable),
+        "reliable": bool(now.reliable),
+    }
+
+
+def verification(test: core.Verification) -> dict[str, Any]:
+    """Give a drive test."""
+    error = float(test.error)
+    return {
+        "state": test.state,
+        "elapsed_s": float(test.elapsed),
+        "duration_s": float(test.duration),
+        "error_mps": error if np.isfinite(error) else None,
+        "limit_mps": float(test.limit),
+    }
+
+
+def degrees(radians: Any) -> list[float]:
+    """Give a vector in degrees."""
+    values: list[float] = np.degrees(radians).tolist()
+    return values
+
+
+def rotation(quaternion: list[float]) -> dict[str, Any]:
+    """Give the quaternion with its matrix and its angles."""
+    roll, pitch, yaw = np.degrees(core.quaternion.angles(quaternion)).tolist()
+    return {
+        "quaternion": quaternion,
+        "matrix": core.quaternion.matrix(quaternion).tolist(),
+        "angles_deg": {"roll": roll, "pitch": pitch, "yaw": yaw},
+    }
+
+
+def installation(
+    row: installations.Installation,
+    device_id: str,
+    since_started_at: datetime | None,
+    mount_row: mounts.Mount | None,
+    open_alerts: int,
+) -> schemas.Installation:
+    """Give the installation resource."""
+    shown = row.status
+    now = shown["estimate"]
+    since = row.since_at if since_started_at is None or row.since_t is None else utc(since_started_at, row.since_t)
+    return schemas.Installation.model_validate(
+        {
+            "device_id": device_id,
+            "stage": row.stage,
+            "since": since,
+            "progress": shown["progress"],
+            "needs": shown["needs"],
+            "hint": hint(row.stage, shown["needs"]),
+            "estimate": None if now is None else now | rotation(now["quaternion"]),
+            "verification": shown["verification"],
+            "mount": None if mount_row is None else mount(mount_row),
+            "open_alerts": open_alerts,
+            "last_data_at": row.last_data_at,
+            "revision": row.revision,
+        }
+    )
+
+
+def mount(row: mounts.Mount) -> schemas.Mount:
+    """Give a confirmed mounting."""
+    return schemas.Mount.model_validate(
+        rotation(row.quaternion)
+        | {
+            "id": row.n,
+            "sigma_deg": row.sigma_deg,
+            "confirmed_at": utc(row.started_at, row.t),
+            "status": row.status,
+            "verification": row.verification,
+        }
+    )
+
+
+def device(row: devices.Device) -> schemas.Device:
+    """Give a device."""
+    shown = row._asdict()
+    return schemas.Device.model_validate(
+        {name: shown[name] for name in schemas.Device.model_fields if name != "progress"}
+        | {"progress": row.status["progress"]}
+    )
+
+
+def alert(row: alerts.Alert) -> schemas.Alert:
+    """Give an alert."""
+    shown = row._asdict()
+    return schemas.Alert.model_validate({"id": shown.pop("pk")} | shown)
+
+
+def utc(started_at: datetime, t: float) -> datetime:
+    """Give the moment at `t` seconds on the clock of a session that started at `started_at`."""
+    return started_at + timedelta(seconds=t)

@@ -1,0 +1,57 @@
+"""What the live stream is told, written in the transaction it tells about."""
+
+from datetime import datetime
+from typing import Literal
+
+from api import schemas
+from api.services import presenting
+from storage import alerts, devices, events, installations, mounts, sessions
+from storage.database import ReadSession, WriteSession
+
+
+def read_installation(tx: ReadSession, device_pk: int, device_id: str) -> schemas.Installation:
+    """Give the installation resource of a device that exists."""
+    row = installations.get(tx, device_pk)
+    if row is None:
+        raise LookupError(f"device {device_id} has no installation")
+    return show(tx, row, device_id)
+
+
+def show(tx: ReadSession, row: installations.Installation, device_id: str) -> schemas.Installation:
+    """Give the installation resource of a row."""
+    started_at = None if row.since_session_pk is None else sessions.get(tx, row.since_session_pk).started_at
+    mount = mounts.current(tx, row.device_pk)
+    return presenting.installation(row, device_id, started_at, mount, alerts.count_open(tx, row.device_pk))
+
+
+def installation_changed(tx: WriteSession, shown: schemas.Installation, now: datetime) -> None:
+    """Tell how an installation stands."""
+    events.add(tx, shown.device_id, "installation", shown.model_dump_json(), now)
+
+
+def alert_changed(tx: WriteSession, pk: int, now: datetime) -> None:
+    """Tell how an alert stands."""
+    row = alerts.find(tx, pk)
+    if row is not None:
+        events.add(tx, row.device_id, "alert", presenting.alert(row).model_dump_json(), now)
+
+
+def device_changed(
+    tx: WriteSession, device_id: str, change: Literal["registered", "edited"], now: datetime
+) -> schemas.Device:
+    """Tell that a device came or was edited; give it as it is now."""
+    row = devices.find(tx, device_id)
+    if row is None:
+        raise LookupError(f"device {device_id} is not there")
+    shown = presenting.device(row)
+    _tell(tx, schemas.DeviceChange(device_id=device_id, change=change, device=shown), now)
+    return shown
+
+
+def device_removed(tx: WriteSession, device_id: str, now: datetime) -> None:
+    """Tell that a device went."""
+    _tell(tx, schemas.DeviceChange(device_id=device_id, change="removed", device=None), now)
+
+
+def _tell(tx: WriteSession, change: schemas.DeviceChange, now: datetime) -> None:
+    events.add(tx, change.device_id, "device", change.model_dump_json(), now)

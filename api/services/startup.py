@@ -1,0 +1,36 @@
+"""What happens before the first request: migrations, secrets, the first admin key, the compiled estimator."""
+
+import numpy as np
+
+import core
+from api.services import access
+from api.services.context import Context
+from storage import events, meta, migrate
+
+
+def prepare(context: Context) -> str | None:
+    """Bring the database up to date; give the first admin key if this call made it, for the caller to show once.
+
+    Several processes may call this at once: one does the work, the others wait for it.
+    """
+    migrate.upgrade(context.database)
+    with context.database.write() as tx:
+        migrate.lock(tx)
+        access.ensure_cookie_secret(tx)
+        if meta.get(tx, events.PRUNED) is None:
+            meta.put(tx, events.PRUNED, "0.0")
+        return access.first_admin_key(tx, context)
+
+
+def warm_up(context: Context) -> None:
+    """Compile the estimator's kernel, with and without a gyroscope, on two seconds of a parked vehicle."""
+    t = np.arange(0.0, 2.0, 0.01)
+    f_s = np.tile([0.0, 0.0, 9.81], (t.size, 1))
+    rows = np.arange(0, t.size, 25)
+    fix = np.full((rows.size, len(core.FIX_COLUMNS)), np.nan)
+    fix[:, [core.FIX_COLUMNS.index(name) for name in ("speed", "course")]] = 0.0
+    for w_s in (None, np.zeros_like(f_s)):
+        samples = core.Samples.make(t, f_s, w_s, rows, np.ones(rows.size, np.bool_), fix)
+        state = core.begin_session(context.params, core.initial_state(context.params))
+        state, _ = core.advance(context.params, state, samples)
+        core.decode(core.encode(state))

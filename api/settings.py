@@ -1,0 +1,83 @@
+"""Every setting of the service: name, meaning, unit, default. `docs/settings.md` is made from this file."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, SecretStr
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+PREFIX = "LIVELLA_"
+MIB = 1024 * 1024
+
+
+class Settings(BaseSettings):
+    """Read from the environment, each name with `LIVELLA_` in front; the command line's flags go before it."""
+
+    model_config = SettingsConfigDict(env_prefix=PREFIX, extra="forbid", frozen=True)
+
+    host: str = Field("127.0.0.1", description="Address to listen on; `0.0.0.0` for every network interface.")
+    port: int = Field(8000, ge=0, le=65535, description="TCP port to listen on.")
+    workers: int = Field(1, ge=1, le=64, description="Server processes.")
+    data_dir: Path = Field(Path("data"), description="Directory of the SQLite database, made when missing.")
+    database_url: SecretStr | None = Field(
+        None,
+        description="Database, `postgresql://user:password@host/name` or `sqlite:///file`; "
+        "unset: SQLite file `livella.db` in the data directory.",
+    )
+    admin_key: SecretStr | None = Field(
+        None,
+        min_length=1,
+        description="First admin key, to be chosen at random (32 characters or more); "
+        "unset: one is made at first start and printed once.",
+    )
+    preset: Literal["default", "thesis"] = Field("default", description="Parameter set of the estimator.")
+    estimate_interval: float = Field(
+        5.0, ge=0.1, le=3600, description="Seconds of device time between two rows of the angle history."
+    )
+    max_chunk_bytes: int = Field(16 * MIB, ge=1024, description="Largest chunk as sent, bytes.")
+    max_decoded_bytes: int = Field(64 * MIB, ge=1024, description="Largest chunk after decompression, bytes.")
+    gap_timeout: float = Field(
+        600.0, gt=0, description="Seconds a chunk waits for a missing one before it before the gap is declared."
+    )
+    max_waiting_chunks: int = Field(64, ge=1, le=1024, description="Chunks waiting in one session that declare the gap.")
+    session_hours: float = Field(12.0, gt=0, le=720, description="Hours until a sign-in to the page ends.")
+    history_days: float = Field(
+        90.0, gt=0, description="Days the angle history and the receipts of chunks are kept; mountings are kept for ever."
+    )
+    stream_minutes: float = Field(
+        15.0, gt=0, description="Minutes a live stream that was cut off can be resumed without a gap."
+    )
+
+    @property
+    def url(self) -> str:
+        """The database's URL."""
+        if self.database_url is not None:
+            return self.database_url.get_secret_value()
+        return f"sqlite:///{self.data_dir.absolute() / 'livella.db'}"
+
+
+def table() -> str:
+    """Give the settings as a Markdown table."""
+    rows = [f"| `{PREFIX}{name.upper()}` | {field.description} | {_default(field.default)} |" for name, field in FIELDS]
+    return "\n".join(["| variable | meaning and unit | default |", "|---|---|---|", *rows])
+
+
+def document() -> str:
+    """Give `docs/settings.md`."""
+    return (
+        "# Settings\n\n"
+        "Set in the environment; the flags of `livella serve` go before the environment.\n"
+        "This page is made from `api/settings.py` by `python -m api.settings > docs/settings.md`.\n\n"
+        f"{table()}\n"
+    )
+
+
+FIELDS = tuple(Settings.model_fields.items())
+
+
+def _default(value: Annotated[object, "a field's default"]) -> str:
+    return "unset" if value is None else f"`{value}`"
+
+
+if __name__ == "__main__":
+    print(document(), end="")  # noqa: T201

@@ -1,0 +1,125 @@
+"""Alerts. One open alert per device and kind: a recurrence raises its count."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any, NamedTuple
+
+import sqlalchemy as sa
+
+from storage.database import ReadSession, WriteSession
+from storage.models import alerts, devices
+
+OPEN, ACKNOWLEDGED, RESOLVED = "open", "acknowledged", "resolved"
+
+
+class Alert(NamedTuple):
+    """An alert."""
+
+    pk: int
+    device_id: str
+    kind: str
+    severity: str
+    state: str
+    opened_at: datetime
+    updated_at: datetime
+    count: int
+    message: str
+    data: dict[str, Any]
+    acknowledged_at: datetime | None
+    acknowledged_by: str | None
+    acknowledge_note: str | None
+    resolved_at: datetime | None
+    resolved_by: str | None
+    resolve_note: str | None
+
+
+class Finding(NamedTuple):
+    """What an alert tells."""
+
+    kind: str
+    severity: str
+    message: str
+    data: dict[str, Any]
+
+
+class Filter(NamedTuple):
+    """Which alerts to list."""
+
+    state: str | None = None
+    kind: str | None = None
+    severity: str | None = None
+    device_id: str | None = None
+    since: datetime | None = None
+    until: datetime | None = None
+
+
+_select = sa.select(
+    alerts.c.pk, devices.c.id, *(alerts.c[name] for name in Alert._fields if name not in {"pk", "device_id"})
+).join_from(alerts, devices)
+
+
+def find(tx: ReadSession, pk: int) -> Alert | None:
+    """Find an alert by its number."""
+    return tx.one(Alert, _select.where(alerts.c.pk == pk))
+
+
+def find_open(tx: ReadSession, device_pk: int, kinds: Sequence[str]) -> list[Alert]:
+    """Give the alerts of a device of these kinds that are not resolved."""
+    unresolved = (alerts.c.device_pk == device_pk, alerts.c.state != RESOLVED, alerts.c.kind.in_(kinds))
+    return tx.all(Alert, _select.where(*unresolved).order_by(alerts.c.pk))
+
+
+def page(tx: ReadSession, limit: int, before: int | None, wanted: Filter) -> list[Alert]:
+    """Give up to `limit` alerts, newest first, from before number `before`."""
+    conditions = {
+        "state": alerts.c.state == wanted.state,
+        "kind": alerts.c.kind == wanted.kind,
+        "severity": alerts.c.severity == wanted.severity,
+        "device_id": devices.c.id == wanted.device_id,
+        "since": alerts.c.opened_at >= wanted.since,
+        "until": alerts.c.opened_at < wanted.until,
+    }
+    chosen = [conditions[name] for name, value in wanted._asdict().items() if value is not None]
+    statement = _select.where(*chosen).order_by(alerts.c.pk.desc()).limit(limit)
+    return tx.all(Alert, statement if before is None else statement.where(alerts.c.pk < before))
+
+
+def raise_(tx: WriteSession, device_pk: int, finding: Finding, now: datetime) -> int:
+    """Open an alert, or count it once more when one of this kind is open; give its number."""
+    for alert in find_open(tx, device_pk, [finding.kind]):
+        values = finding._asdict() | {"count": alert.count + 1, "updated_at": now}
+        tx.execute(sa.update(alerts).where(alerts.c.pk == alert.pk).values(**values))
+        return alert.pk
+    return tx.insert(
+        alerts, device_pk=device_pk, state=OPEN, opened_at=now, updated_at=now, count=1, **finding._asdict()
+    )
+
+
+def acknowledge(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime) -> None:
+    """Somebody has seen it."""
+    values = {"state": ACKNOWLEDGED, "acknowledged_at": now, "acknowledged_by": by, "acknowledge_note": note}
+    tx.execute(sa.update(alerts).where(alerts.c.pk == pk).values(**values, updated_at=now))
+
+
+def resolve(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime) -> None:
+    """It is over."""
+    values = {"state": RESOLVED, "resolved_at": now, "resolved_by": by, "resolve_note": note}
+    tx.execute(sa.update(alerts).where(alerts.c.pk == pk).values(**values, updated_at=now))
+
+
+def counts(tx: ReadSession, device_pk: int | None = None) -> list[tuple[str, str, int]]:
+    """Count alerts that are not resolved: (kind, severity, count)."""
+    statement = (
+        sa.select(alerts.c.kind, alerts.c.severity, sa.func.count())
+        .where(alerts.c.state != RESOLVED)
+        .group_by(alerts.c.kind, alerts.c.severity)
+    )
+    if device_pk is not None:
+        statement = statement.where(alerts.c.device_pk == device_pk)
+    return tx.all(lambda kind, severity, count: (kind, severity, count), statement)
+
+
+def count_open(tx: ReadSession, device_pk: int) -> int:
+    """Count the alerts of a device that are not resolved."""
+    statement = sa.select(sa.func.count()).where(alerts.c.device_pk == device_pk, alerts.c.state != RESOLVED)
+    return int(tx.value(statement))

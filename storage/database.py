@@ -1,0 +1,131 @@
+"""The database: SQLite (WAL, synchronous FULL) or PostgreSQL, read and write sessions as two types, one commit point."""
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+import sqlalchemy as sa
+from sqlalchemy import event
+from sqlalchemy.engine import Connection, CursorResult, Engine, make_url
+
+T = TypeVar("T")
+
+BUSY_TIMEOUT = 10.0
+"""s a writer waits for another one before the request is answered with 503"""
+
+
+class ReadSession:
+    """One consistent look at the database."""
+
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+
+    @property
+    def is_postgresql(self) -> bool:
+        """True on PostgreSQL, False on SQLite."""
+        return self.connection.dialect.name == "postgresql"
+
+    def one(self, make: Callable[..., T], statement: sa.Select[Any]) -> T | None:
+        """Give the first row as `make(*row)`, or None."""
+        row = self.connection.execute(statement).first()
+        return None if row is None else make(*row)
+
+    def all(self, make: Callable[..., T], statement: sa.Select[Any]) -> list[T]:
+        """Give every row as `make(*row)`."""
+        return [make(*row) for row in self.connection.execute(statement)]
+
+    def value(self, statement: sa.Select[Any]) -> Any:
+        """Give the first column of the first row, or None."""
+        return self.connection.execute(statement).scalar()
+
+
+class WriteSession(ReadSession):
+    """A transaction that may write; everything in it becomes durable together, or nothing does."""
+
+    def execute(self, statement: sa.Executable) -> CursorResult[Any]:
+        """Run an INSERT, UPDATE or DELETE."""
+        return self.connection.execute(statement)
+
+    def insert(self, table: sa.Table, **values: Any) -> int:
+        """Insert one row and give its `pk`."""
+        inserted = self.connection.execute(sa.insert(table).values(**values).returning(table.c.pk))
+        return int(inserted.scalar_one())
+
+
+class Database:
+    """The engines of one database. `read` and `write` are the only ways in, `write` is the only commit point."""
+
+    def __init__(self, url: str) -> None:
+        self.url = make_url(url)
+        if self.url.drivername in {"postgresql", "postgres"}:
+            self.url = self.url.set(drivername="postgresql+psycopg")
+        self.is_sqlite = self.url.get_backend_name() == "sqlite"
+        self._writer = threading.Lock()
+        self._reads, self._writes = _sqlite_engines(self.url) if self.is_sqlite else _postgresql_engines(self.url)
+
+    @property
+    def engine(self) -> Engine:
+        """The engine that writes, for migrations."""
+        return self._writes
+
+    @contextmanager
+    def read(self) -> Iterator[ReadSession]:
+        """Open a read-only transaction: every query in it sees the same moment."""
+        with self._reads.connect() as connection, connection.begin():
+            yield ReadSession(connection)
+
+    @contextmanager
+    def write(self) -> Iterator[WriteSession]:
+        """Open a transaction, committed durably when the block ends and rolled back when it raises."""
+        with self._one_writer(), self._writes.begin() as connection:
+            yield WriteSession(connection)
+
+    @contextmanager
+    def _one_writer(self) -> Iterator[None]:
+        """Queue the threads of this process fairly: SQLite lets one write, and its own waiting is by chance."""
+        if not self.is_sqlite:
+            yield
+            return
+        with self._writer:
+            yield
+
+    def close(self) -> None:
+        """Close every connection."""
+        self._reads.dispose()
+        self._writes.dispose()
+
+
+def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:
+    def engine(begin: str, pragmas: tuple[str, ...], **pool: Any) -> Engine:
+        made = sa.create_engine(url, connect_args={"timeout": BUSY_TIMEOUT, "check_same_thread": False}, **pool)
+
+        @event.listens_for(made, "connect")
+        def _connect(connection: Any, _record: Any) -> None:
+            connection.isolation_level = None  # the driver leaves BEGIN to us
+            for pragma in (f"busy_timeout = {int(BUSY_TIMEOUT * 1000)}", "foreign_keys = ON", *pragmas):
+                connection.execute(f"PRAGMA {pragma}")
+
+        @event.listens_for(made, "begin")
+        def _begin(connection: Connection) -> None:
+            connection.exec_driver_sql(begin)
+
+        return made
+
+    reads = engine("BEGIN", ("query_only = ON",), pool_size=8, max_overflow=32)
+    writes = engine("BEGIN IMMEDIATE", ("synchronous = FULL",), pool_size=1, max_overflow=1)
+    return reads, writes
+
+
+def _postgresql_engines(url: sa.URL) -> tuple[Engine, Engine]:
+    waits = f"-c lock_timeout={int(BUSY_TIMEOUT * 1000)} -c idle_in_transaction_session_timeout=60000"
+    engine = sa.create_engine(
+        url,
+        connect_args={"connect_timeout": 5, "options": waits, "application_name": "livella"},
+        pool_pre_ping=True,
+        pool_size=10,
+        max_overflow=40,
+        pool_timeout=BUSY_TIMEOUT,
+    )
+    reads = engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
+    return reads, engine

@@ -1,0 +1,120 @@
+"""Devices, and the lock under which everything of one device is changed."""
+
+from datetime import datetime
+from typing import Any, NamedTuple
+
+import sqlalchemy as sa
+
+from storage.database import ReadSession, WriteSession
+from storage.models import alerts, devices, installations, mounts
+
+
+class Device(NamedTuple):
+    """A device with a summary of its installation."""
+
+    pk: int
+    id: str
+    name: str
+    vehicle: str | None
+    notes: str | None
+    created_at: datetime
+    stage: str
+    status: dict[str, Any]
+    last_data_at: datetime | None
+    revision: int
+    mount_status: str | None
+    open_alerts: int
+
+
+open_alerts = (
+    sa.select(sa.func.count())
+    .where(alerts.c.device_pk == devices.c.pk, alerts.c.state != "resolved")
+    .correlate(devices)
+    .scalar_subquery()
+)
+
+_mount_status = (
+    sa.select(mounts.c.status)
+    .where(mounts.c.device_pk == devices.c.pk, mounts.c.status != "superseded")
+    .correlate(devices)
+    .scalar_subquery()
+)
+
+_select = sa.select(
+    devices.c.pk,
+    devices.c.id,
+    devices.c.name,
+    devices.c.vehicle,
+    devices.c.notes,
+    devices.c.created_at,
+    installations.c.stage,
+    installations.c.status,
+    installations.c.last_data_at,
+    installations.c.revision,
+    _mount_status,
+    open_alerts,
+).join_from(devices, installations)
+
+
+def lock(tx: WriteSession, device_id: str) -> int | None:
+    """Make every other writer of this device wait until this transaction ends; give its `pk`, None when unknown."""
+    statement = sa.select(devices.c.pk).where(devices.c.id == device_id).with_for_update(key_share=True)
+    pk: int | None = tx.value(statement)
+    return pk
+
+
+def find(tx: ReadSession, device_id: str) -> Device | None:
+    """Find a device by its id."""
+    return tx.one(Device, _select.where(devices.c.id == device_id))
+
+
+def exists(tx: ReadSession, device_id: str) -> int | None:
+    """Give the `pk` of a device, None when unknown."""
+    pk: int | None = tx.value(sa.select(devices.c.pk).where(devices.c.id == device_id))
+    return pk
+
+
+def page(
+    tx: ReadSession,
+    limit: int,
+    after: str | None = None,
+    q: str | None = None,
+    stage: str | None = None,
+    has_open_alert: bool | None = None,
+) -> list[Device]:
+    """Give up to `limit` devices in the order of their ids, from after `after`; `q` is looked for in every text."""
+    statement = _select.order_by(devices.c.id).limit(limit)
+    if after is not None:
+        statement = statement.where(devices.c.id > after)
+    if q:
+        texts = (devices.c.id, devices.c.name, devices.c.vehicle, devices.c.notes)
+        statement = statement.where(sa.or_(*(text.icontains(q, autoescape=True) for text in texts)))
+    if stage is not None:
+        statement = statement.where(installations.c.stage == stage)
+    if has_open_alert is not None:
+        statement = statement.where(open_alerts > 0 if has_open_alert else open_alerts == 0)
+    return tx.all(Device, statement)
+
+
+def add(tx: WriteSession, device_id: str, name: str, vehicle: str | None, notes: str | None, now: datetime) -> int:
+    """Register a device; `IntegrityError` when the id is taken."""
+    return tx.insert(devices, id=device_id, name=name, vehicle=vehicle, notes=notes, created_at=now)
+
+
+def edit(tx: WriteSession, pk: int, values: dict[str, Any]) -> None:
+    """Change the texts of a device."""
+    if values:
+        tx.execute(sa.update(devices).where(devices.c.pk == pk).values(**values))
+
+
+def remove(tx: WriteSession, pk: int) -> None:
+    """Remove a device and everything of it."""
+    tx.execute(sa.delete(devices).where(devices.c.pk == pk))
+
+
+def stages(tx: ReadSession, device_pk: int | None = None) -> dict[str, int]:
+    """Count devices by stage, all of them or only one."""
+    statement = sa.select(installations.c.stage, sa.func.count()).group_by(installations.c.stage)
+    if device_pk is not None:
+        statement = statement.where(installations.c.device_pk == device_pk)
+    return dict(tx.all(lambda stage, count: (stage, count), statement))

@@ -1,0 +1,85 @@
+"""Angle history: a block of rows per chunk, packed (bytes to us), which makes a chunk one insert and a chart few reads."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any, NamedTuple
+
+import sqlalchemy as sa
+
+from storage.database import ReadSession, WriteSession
+from storage.models import estimates, sessions
+
+
+class Mark(NamedTuple):
+    """What is known of a block without reading it."""
+
+    pk: int
+    count: int
+    """rows"""
+    changes: int
+    """rows whose stage differs from that of the row before"""
+
+
+class Block(NamedTuple):
+    """A block of history, with the session that tells its time."""
+
+    session: str
+    started_at: datetime
+    rows: bytes
+
+
+def add(
+    tx: WriteSession, device_pk: int, session_pk: int, t: tuple[float, float], mark: tuple[int, int], rows: bytes, now: datetime
+) -> None:
+    """Append a block: `t` its first and last time on the session's clock, `mark` its rows and stage changes."""
+    tx.insert(
+        estimates,
+        device_pk=device_pk,
+        session_pk=session_pk,
+        t_first=t[0],
+        t_last=t[1],
+        count=mark[0],
+        changes=mark[1],
+        rows=rows,
+        received_at=now,
+    )
+
+
+def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[float]:
+    """Time of a column on the session's clock, in microseconds UTC."""
+    return sa.type_coerce(sessions.c.started_at, sa.BigInteger) + column * 1e6
+
+
+def _instant(moment: datetime) -> sa.ColumnElement[Any]:
+    return sa.type_coerce(sa.literal(moment, sessions.c.started_at.type), sa.BigInteger)
+
+
+def marks(tx: ReadSession, device_pk: int, start: datetime | None, end: datetime | None) -> list[Mark]:
+    """Give the marks of the blocks that overlap [start, end], in time order."""
+    statement = (
+        sa.select(estimates.c.pk, estimates.c.count, estimates.c.changes)
+        .join_from(estimates, sessions)
+        .where(estimates.c.device_pk == device_pk)
+        .order_by(estimates.c.pk)
+    )
+    if start is not None:
+        statement = statement.where(_utc(estimates.c.t_last) >= _instant(start))
+    if end is not None:
+        statement = statement.where(_utc(estimates.c.t_first) <= _instant(end))
+    return tx.all(Mark, statement)
+
+
+def blocks(tx: ReadSession, pks: Sequence[int], batch: int = 500) -> list[Block]:
+    """Give the blocks with these numbers, in that order of time."""
+    statement = (
+        sa.select(sessions.c.name, sessions.c.started_at, estimates.c.rows)
+        .join_from(estimates, sessions)
+        .order_by(estimates.c.pk)
+    )
+    batches = (pks[i : i + batch] for i in range(0, len(pks), batch))
+    return [block for part in batches for block in tx.all(Block, statement.where(estimates.c.pk.in_(part)))]
+
+
+def forget(tx: WriteSession, before: datetime) -> int:
+    """Remove the blocks that came in before a moment."""
+    return tx.execute(sa.delete(estimates).where(estimates.c.received_at < before)).rowcount

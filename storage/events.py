@@ -1,0 +1,96 @@
+"""What the live stream tells, in an order in which nothing can appear before something already read.
+
+SQLite commits one transaction after the other, so row numbers are that order. PostgreSQL hands out row numbers before
+the commit: a lower one may become visible later. There the order is (transaction, row), read only up to the oldest
+transaction still running.
+"""
+
+from datetime import datetime
+from typing import NamedTuple, Self
+
+import sqlalchemy as sa
+
+from storage import meta
+from storage.database import ReadSession, WriteSession
+from storage.models import events
+
+PRUNED = "events_pruned"
+
+
+class Position(NamedTuple):
+    """A place in the stream: everything up to here was read."""
+
+    xact: int
+    pk: int
+
+    def __str__(self) -> str:
+        """Give the text used as event id."""
+        return f"{self.xact}.{self.pk}"
+
+    @classmethod
+    def parse(cls, text: str) -> Self | None:
+        """Read what `str` gave; None when it is something else."""
+        xact, dot, pk = text.partition(".")
+        sound = dot and all(part.isascii() and part.isdigit() and len(part) < 19 for part in (xact, pk))
+        return cls(int(xact), int(pk)) if sound else None
+
+
+class Event(NamedTuple):
+    """An event of the stream; `data` is JSON."""
+
+    position: Position
+    device_id: str
+    type: str
+    data: str
+
+
+def add(tx: WriteSession, device_id: str, kind: str, data: str, now: datetime) -> None:
+    """Append an event."""
+    xact = _bigint(sa.func.pg_current_xact_id()) if tx.is_postgresql else sa.literal(0)
+    tx.execute(sa.insert(events).values(xact=xact, device_id=device_id, type=kind, data=data, created_at=now))
+
+
+def after(tx: ReadSession, position: Position, limit: int = 500) -> list[Event]:
+    """Give up to `limit` events after a position."""
+    statement = (
+        sa.select(events.c.xact, events.c.pk, events.c.device_id, events.c.type, events.c.data)
+        .where(sa.tuple_(events.c.xact, events.c.pk) > sa.tuple_(*map(sa.literal, position)))
+        .order_by(events.c.xact, events.c.pk)
+        .limit(limit)
+    )
+    if tx.is_postgresql:
+        statement = statement.where(events.c.xact < _oldest_running())
+    return tx.all(lambda xact, pk, *rest: Event(Position(xact, pk), *rest), statement)
+
+
+def latest(tx: ReadSession) -> Position:
+    """Give the position now."""
+    if tx.is_postgresql:
+        return Position(tx.value(sa.select(_oldest_running())), 0)
+    return Position(0, tx.value(sa.select(sa.func.coalesce(sa.func.max(events.c.pk), 0))))
+
+
+def pruned(tx: ReadSession) -> Position:
+    """Give the position of the newest event that was removed."""
+    text = meta.get(tx, PRUNED)
+    return (Position.parse(text) if text else None) or Position(0, 0)
+
+
+def forget(tx: WriteSession, before: datetime) -> None:
+    """Remove the events from before a moment."""
+    old = events.c.created_at < before
+    newest = tx.one(
+        Position,
+        sa.select(events.c.xact, events.c.pk).where(old).order_by(events.c.xact.desc(), events.c.pk.desc()).limit(1),
+    )
+    if newest is not None:
+        tx.execute(sa.delete(events).where(old))
+        meta.put(tx, PRUNED, str(max(newest, pruned(tx))))
+
+
+def _oldest_running() -> sa.ColumnElement[int]:
+    return _bigint(sa.func.pg_snapshot_xmin(sa.func.pg_current_snapshot()))
+
+
+def _bigint(xid8: sa.ColumnElement[object]) -> sa.ColumnElement[int]:
+    return sa.cast(sa.cast(xid8, sa.Text), sa.BigInteger)

@@ -1,0 +1,59 @@
+"""API keys. The key itself is never here, only its SHA-256."""
+
+from datetime import datetime
+from typing import NamedTuple
+
+import sqlalchemy as sa
+
+from storage.database import ReadSession, WriteSession
+from storage.models import api_keys, devices
+
+
+class Key(NamedTuple):
+    """A key as it is known here."""
+
+    pk: int
+    digest: bytes
+    role: str
+    name: str
+    device_pk: int | None
+    device_id: str | None
+
+
+_select = sa.select(
+    api_keys.c.pk, api_keys.c.digest, api_keys.c.role, api_keys.c.name, api_keys.c.device_pk, devices.c.id
+).select_from(api_keys.outerjoin(devices))
+
+
+def by_digest(tx: ReadSession, digest: bytes) -> Key | None:
+    """Find a key by its SHA-256."""
+    return tx.one(Key, _select.where(api_keys.c.digest == digest))
+
+
+def by_pk(tx: ReadSession, pk: int) -> Key | None:
+    """Find a key by its number."""
+    return tx.one(Key, _select.where(api_keys.c.pk == pk))
+
+
+def add(
+    tx: WriteSession, digest: bytes, role: str, name: str, now: datetime, device_pk: int | None = None, source: str = "made"
+) -> int:
+    """Store a key."""
+    return tx.insert(
+        api_keys, digest=digest, role=role, name=name, device_pk=device_pk, source=source, created_at=now
+    )
+
+
+def any_of_role(tx: ReadSession, role: str) -> bool:
+    """Tell whether there is a key of this role."""
+    return tx.value(sa.select(api_keys.c.pk).where(api_keys.c.role == role).limit(1)) is not None
+
+
+def remove_source(tx: WriteSession, source: str) -> None:
+    """Revoke every key of this origin."""
+    tx.execute(sa.delete(api_keys).where(api_keys.c.source == source))
+
+
+def remove(tx: WriteSession, pk: int) -> bool:
+    """Revoke a key; False when there is none."""
+    return tx.execute(sa.delete(api_keys).where(api_keys.c.pk == pk)).rowcount > 0

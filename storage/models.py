@@ -1,0 +1,212 @@
+"""The tables. Rows belong to a device and go with it; only `events` outlives it, so that a stream can tell of its end.
+
+Times are whole microseconds since 1970 (`Instant`), the same on every database. History is kept on the device's clock
+as (session, t); `sessions.started_at` turns it into UTC when it is read, see `storage/sessions.py`.
+"""
+
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import sqlalchemy as sa
+from sqlalchemy.engine import Dialect
+
+EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+MICROSECOND = timedelta(microseconds=1)
+
+
+class Instant(sa.TypeDecorator[datetime]):
+    """A moment in UTC, stored as whole microseconds since 1970."""
+
+    impl = sa.BigInteger
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> int | None:  # noqa: ARG002, PLR6301
+        """Turn an aware datetime into microseconds."""
+        return None if value is None else (value - EPOCH) // MICROSECOND
+
+    def process_result_value(self, value: Any | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002, PLR6301
+        """Turn microseconds into a datetime in UTC."""
+        return None if value is None else EPOCH + value * MICROSECOND
+
+
+BIG = sa.BigInteger().with_variant(sa.Integer(), "sqlite")
+"""Surrogate keys: 64 bits everywhere (SQLite numbers rows only in a column of type INTEGER)."""
+
+NAME = sa.String(128)
+DEVICE_ID = sa.String(64).with_variant(sa.String(64, collation="C"), "postgresql")
+"""Compared byte by byte on every database, so that a list's order and its cursors do not depend on a locale."""
+
+metadata = sa.MetaData(
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+
+
+def _device(**options: Any) -> sa.Column[int]:
+    return sa.Column("device_pk", BIG, sa.ForeignKey("devices.pk", ondelete="CASCADE"), **options)
+
+
+def _session(name: str = "session_pk", **options: Any) -> sa.Column[int]:
+    return sa.Column(name, BIG, sa.ForeignKey("sessions.pk", ondelete="CASCADE"), **options)
+
+
+meta = sa.Table(
+    "meta",
+    metadata,
+    sa.Column("name", sa.String(64), primary_key=True),
+    sa.Column("value", sa.Text, nullable=False),
+)
+
+devices = sa.Table(
+    "devices",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    sa.Column("id", DEVICE_ID, nullable=False, unique=True),
+    sa.Column("name", NAME, nullable=False),
+    sa.Column("vehicle", NAME),
+    sa.Column("notes", sa.Text),
+    sa.Column("created_at", Instant, nullable=False),
+    sqlite_autoincrement=True,
+)
+
+api_keys = sa.Table(
+    "api_keys",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    sa.Column("digest", sa.LargeBinary(32), nullable=False, unique=True),
+    sa.Column("role", sa.String(16), nullable=False),
+    sa.Column("name", NAME, nullable=False),
+    _device(index=True),
+    sa.Column("source", sa.String(16), nullable=False),
+    sa.Column("created_at", Instant, nullable=False),
+    sqlite_autoincrement=True,
+)
+
+sessions = sa.Table(
+    "sessions",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    _device(nullable=False),
+    sa.Column("name", NAME, nullable=False),
+    sa.Column("next_seq", sa.Integer, nullable=False),
+    sa.Column("context", sa.JSON(none_as_null=True)),
+    sa.Column("started_at", Instant),
+    sa.Column("created_at", Instant, nullable=False),
+    sa.UniqueConstraint("device_pk", "name"),
+    sqlite_autoincrement=True,
+)
+
+chunks = sa.Table(
+    "chunks",
+    metadata,
+    _session(primary_key=True),
+    sa.Column("seq", sa.Integer, primary_key=True, autoincrement=False),
+    sa.Column("digest", sa.String(64), nullable=False),
+    sa.Column("state", sa.String(16), nullable=False),
+    sa.Column("samples", sa.Integer, nullable=False),
+    sa.Column("fixes", sa.Integer, nullable=False),
+    sa.Column("rejected", sa.JSON, nullable=False),
+    sa.Column("received_at", Instant, nullable=False),
+    sa.Column("body", sa.LargeBinary),
+    sa.Column("content_type", sa.Text),
+    sa.Column("content_encoding", sa.Text),
+    sa.Column("course", sa.String(16)),
+    sa.Index("ix_chunks_received_at", "received_at"),
+)
+sa.Index(
+    "ix_chunks_waiting",
+    chunks.c.received_at,
+    sqlite_where=chunks.c.state == "waiting",
+    postgresql_where=chunks.c.state == "waiting",
+)
+
+installations = sa.Table(
+    "installations",
+    metadata,
+    _device(primary_key=True),
+    sa.Column("snapshot", sa.LargeBinary),
+    _session(),
+    sa.Column("stage", sa.String(16), nullable=False, index=True),
+    _session("since_session_pk"),
+    sa.Column("since_t", sa.Double),
+    sa.Column("since_at", Instant, nullable=False),
+    sa.Column("status", sa.JSON, nullable=False),
+    sa.Column("last_data_at", Instant),
+    sa.Column("revision", sa.BigInteger, nullable=False),
+)
+
+estimates = sa.Table(
+    "estimates",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    _device(nullable=False),
+    _session(nullable=False),
+    sa.Column("t_first", sa.Double, nullable=False),
+    sa.Column("t_last", sa.Double, nullable=False),
+    sa.Column("count", sa.Integer, nullable=False),
+    sa.Column("changes", sa.Integer, nullable=False),
+    sa.Column("rows", sa.LargeBinary, nullable=False),
+    sa.Column("received_at", Instant, nullable=False, index=True),
+    sa.Index("ix_estimates_device_pk_pk", "device_pk", "pk"),
+    sqlite_autoincrement=True,
+)
+
+mounts = sa.Table(
+    "mounts",
+    metadata,
+    _device(primary_key=True),
+    sa.Column("n", sa.Integer, primary_key=True, autoincrement=False),
+    _session(nullable=False),
+    sa.Column("t", sa.Double, nullable=False),
+    sa.Column("quaternion", sa.JSON, nullable=False),
+    sa.Column("sigma_deg", sa.JSON, nullable=False),
+    sa.Column("verification", sa.JSON, nullable=False),
+    sa.Column("status", sa.String(16), nullable=False),
+)
+
+alerts = sa.Table(
+    "alerts",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    _device(nullable=False),
+    sa.Column("kind", sa.String(32), nullable=False),
+    sa.Column("severity", sa.String(16), nullable=False),
+    sa.Column("state", sa.String(16), nullable=False),
+    sa.Column("opened_at", Instant, nullable=False),
+    sa.Column("updated_at", Instant, nullable=False),
+    sa.Column("count", sa.Integer, nullable=False),
+    sa.Column("message", sa.Text, nullable=False),
+    sa.Column("data", sa.JSON, nullable=False),
+    sa.Column("acknowledged_at", Instant),
+    sa.Column("acknowledged_by", NAME),
+    sa.Column("acknowledge_note", sa.Text),
+    sa.Column("resolved_at", Instant),
+    sa.Column("resolved_by", NAME),
+    sa.Column("resolve_note", sa.Text),
+    sqlite_autoincrement=True,
+)
+sa.Index(
+    "uq_alerts_open",
+    alerts.c.device_pk,
+    alerts.c.kind,
+    unique=True,
+    sqlite_where=alerts.c.state != "resolved",
+    postgresql_where=alerts.c.state != "resolved",
+)
+
+events = sa.Table(
+    "events",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    sa.Column("xact", sa.BigInteger, nullable=False),
+    sa.Column("device_id", DEVICE_ID, nullable=False),
+    sa.Column("type", sa.String(16), nullable=False),
+    sa.Column("data", sa.Text, nullable=False),
+    sa.Column("created_at", Instant, nullable=False, index=True),
+    sa.Index("ix_events_xact_pk", "xact", "pk"),
+    sqlite_autoincrement=True,
+)

@@ -1,0 +1,52 @@
+"""Sessions of a device (power-up to power-off), numbered by `pk` in the order in which they were first heard of.
+
+`started_at` is the zero of the session's clock in UTC: the least of (arrival - last sample) over its chunks. A chunk
+arrives after its samples were taken, so the least delayed one tells best; a log replayed faster than it was driven
+then ends now rather than in the future.
+"""
+
+from datetime import datetime
+from typing import Any, NamedTuple
+
+import sqlalchemy as sa
+
+from storage.database import ReadSession, WriteSession
+from storage.models import sessions
+
+
+class Session(NamedTuple):
+    """A session."""
+
+    pk: int
+    name: str
+    next_seq: int
+    context: dict[str, Any] | None
+    started_at: datetime | None
+
+
+_select = sa.select(
+    sessions.c.pk, sessions.c.name, sessions.c.next_seq, sessions.c.context, sessions.c.started_at
+)
+
+
+def find_or_add(tx: WriteSession, device_pk: int, name: str, now: datetime) -> Session:
+    """Find a session by its name; one not heard of before is new."""
+    found = tx.one(Session, _select.where(sessions.c.device_pk == device_pk, sessions.c.name == name))
+    if found is not None:
+        return found
+    pk = tx.insert(sessions, device_pk=device_pk, name=name, next_seq=0, created_at=now)
+    return Session(pk, name, 0, None, None)
+
+
+def get(tx: ReadSession, pk: int) -> Session:
+    """Give the session with this number."""
+    return Session(*tx.connection.execute(_select.where(sessions.c.pk == pk)).one())
+
+
+def save(tx: WriteSession, session: Session) -> None:
+    """Store what evolves."""
+    tx.execute(
+        sa.update(sessions)
+        .where(sessions.c.pk == session.pk)
+        .values(next_seq=session.next_seq, context=session.context, started_at=session.started_at)
+    )
