@@ -35,7 +35,7 @@ def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
     try:
         _refuse_compressed_buffers(content)
         batches, notices = _batches(content, limits)
-    except (pa.ArrowException, OSError, struct.error, IndexError) as error:
+    except (pa.ArrowException, OSError, struct.error, IndexError, UnicodeDecodeError) as error:
         message = f"expected an Arrow IPC stream: {error}"
         raise FormatError.unreadable(Problem(None, None, "an Arrow IPC stream", message)) from error
     columns = _columns(batches)
@@ -52,8 +52,7 @@ def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, tuple[str, ...]]
         batches, rows = [], 0
         for batch in stream:
             rows += batch.num_rows
-            if rows > limits.max_rows:
-                raise FormatError.too_large(f"the log has more than {limits.max_rows} rows")
+            checks.refuse_rows(rows, limits)
             batch.validate()
             batches.append(batch)
         return pa.Table.from_batches(batches, stream.schema), notices

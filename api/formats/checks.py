@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from api.formats.compression import Limits
 from api.formats.delimited import Cell, Columns, Floats, not_as_expected
 from api.formats.errors import FormatError, Problem
 
@@ -72,6 +73,12 @@ def refuse(faults: list[Fault], locate: Locate) -> None:
         raise FormatError.unreadable(
             *(not_as_expected(locate(fault.row, fault.column), fault.column, fault.expected) for fault in faults)
         )
+
+
+def refuse_rows(rows: int, limits: Limits) -> None:
+    """Raise if a log has too many rows."""
+    if rows > limits.max_rows:
+        raise FormatError.too_large(f"the log has more than {limits.max_rows} rows")
 
 
 def refuse_empty(rows: int, line: int) -> None:

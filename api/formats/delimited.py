@@ -22,6 +22,7 @@ Floats = NDArray[np.float64]
 Columns = dict[str, Floats]
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+_NUMBER_CHARACTERS = b"0123456789+-.eE,; \t\r\n"
 _LINE_END = re.compile(rb"\r\n|\n|\r")
 
 
@@ -131,6 +132,11 @@ def lines(content: bytes) -> Iterator[bytes]:
         yield content[start : end.start()]
         start = end.end()
     yield content[start:]
+
+
+def is_numbers(line: bytes) -> bool:
+    """Tell whether a line holds numbers and separators only."""
+    return any(digit in line for digit in b"0123456789") and not line.strip(_NUMBER_CHARACTERS)
 
 
 def _number(cell: bytes, line: int, column: str) -> float:

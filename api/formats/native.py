@@ -24,6 +24,8 @@ READ = (*TIME, *ACCELERATION, *RATE, "fix", *GPS)
 NOT_READ = ("mx", "my", "mz", "temp", "steer")
 """known columns that the estimator does not use"""
 
+MAX_COLUMNS: Final = 100
+MAX_NAME: Final = 60
 SLOW: Final = 1.0
 """m/s; below it a receiver may leave the course empty"""
 
@@ -41,8 +43,11 @@ def check_names(names: Sequence[str], line: int | None) -> tuple[str, ...]:
     Raises
     ------
     FormatError
-        422: a name twice, a needed column missing, part of a group of three axes or of a position missing.
+        422: too many or too long names, a name twice, a needed column missing, part of a group of three axes or of a position missing.
     """
+    if len(names) > MAX_COLUMNS or any(len(name) > MAX_NAME for name in names):
+        expected = f"at most {MAX_COLUMNS} columns, their names no longer than {MAX_NAME} characters"
+        raise FormatError.unreadable(Problem(line, None, expected, f"expected {expected}"))
     unknown = [name for name in names if name not in READ and name not in NOT_READ]
     problems = [
         *(Problem(line, name, "each column once", "the column is there twice") for name in _twice(names)),

@@ -4,7 +4,7 @@ import csv
 
 from api.formats import checks
 from api.formats.compression import Limits
-from api.formats.delimited import DelimitedText, lines, text_content
+from api.formats.delimited import DelimitedText, is_numbers, lines, text_content
 from api.formats.errors import FormatError, Problem
 from api.formats.log import ParsedLog
 from api.formats.native import READ, NativeTable, check_names
@@ -27,6 +27,7 @@ def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
     columns = text.columns(tuple(name for name in names if name in READ))
     rows = columns["fix"].size
     checks.refuse_empty(rows, line=2)
+    checks.refuse_rows(rows, limits)
     table = NativeTable(columns, text.cell)
     return ParsedLog(MEDIA_TYPE, digest, notices, rows, table.read)
 
@@ -37,20 +38,12 @@ def _names(header: bytes) -> tuple[str, ...]:
     except (UnicodeDecodeError, csv.Error):
         raise FormatError.unreadable(Problem(1, None, "column names", "expected column names in UTF-8")) from None
     names = tuple(cell.strip() for cell in cells)
+    if is_numbers(header):
+        raise FormatError.unreadable(
+            Problem(1, None, "column names", "expected a header with column names, found numbers")
+        )
     if len(names) == 1 and len(header.replace(b";", b"\t").split(b"\t")) > 1:
         raise FormatError.unreadable(
             Problem(1, None, "commas between cells", "expected column names separated by commas")
         )
-    if names and all(_is_number(name) for name in names):
-        raise FormatError.unreadable(
-            Problem(1, None, "column names", "expected a header with column names, found numbers")
-        )
     return names
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text or "0")
-    except ValueError:
-        return False
-    return True

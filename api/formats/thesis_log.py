@@ -51,7 +51,9 @@ def parse(content: bytes, limits: Limits, digest: str, course: Sense) -> ParsedL
     if delimiter == " ":
         content, delimiter = b"\n".join(b",".join(line.split()) for line in lines(content)), ","
     text = DelimitedText(content, COLUMNS, delimiter, header_lines=0)
-    table = ThesisTable(text.columns(COLUMNS), text.cell)
+    columns = text.columns(COLUMNS)
+    checks.refuse_rows(columns[TIME].size, limits)
+    table = ThesisTable(columns, text.cell)
     return ParsedLog(MEDIA_TYPE, digest, (), table.rows, partial(table.read, course))
 
 
