@@ -43,7 +43,8 @@ def check_names(names: Sequence[str], line: int | None) -> tuple[str, ...]:
     Raises
     ------
     FormatError
-        422: too many or too long names, a name twice, a needed column missing, part of a group of three axes or of a position missing.
+        422: too many or too long names, a name twice, a needed column missing, part of three axes or of a position
+        missing.
     """
     if len(names) > MAX_COLUMNS or any(len(name) > MAX_NAME for name in names):
         expected = f"at most {MAX_COLUMNS} columns, their names no longer than {MAX_NAME} characters"
