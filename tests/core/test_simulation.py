@@ -25,7 +25,8 @@ def in_vehicle(drive: Drive, x_s: Floats) -> Floats:
 
 
 def level_speed(drive: Drive) -> Floats:
-    return np.sqrt(np.sum(drive.truth.v_n[:, :2] ** 2, axis=1))
+    east, north, _ = drive.truth.v_n.T
+    return np.hypot(east, north)
 
 
 def strapdown(drive: Drive) -> tuple[Floats, Floats]:
@@ -108,6 +109,25 @@ def test_braking_pushes_backwards_and_dips_the_nose() -> None:
     assert np.degrees(-3 * np.polyfit(ahead, pitch, 1)[0]) == pytest.approx(1.5, abs=0.5)
 
 
+def test_the_nose_points_uphill() -> None:
+    drive = simulate(replace(EXACT, route="hills", seconds=300))
+    moving = drive.truth.speed > 3
+    climb = np.arcsin(drive.truth.v_n[moving, 2] / drive.truth.speed[moving])
+    pitch = np.array([quaternion.angles(q)[1] for q in drive.truth.q_nv[moving]])
+    assert np.degrees(np.std(climb)) > 1.5
+    assert np.polyfit(climb, pitch, 1)[0] == pytest.approx(-1, abs=0.15)
+
+
+def test_the_nose_points_into_the_curve() -> None:
+    drive = simulate(replace(EXACT, route="curves"))
+    moving = drive.truth.speed > 2
+    ahead_n = quaternion.rotate(drive.truth.q_nv, [1.0, 0.0, 0.0])[moving]
+    v_n = drive.truth.v_n[moving]
+    slip = (v_n[:, 0] * ahead_n[:, 1] - v_n[:, 1] * ahead_n[:, 0]) / drive.truth.speed[moving]  # left positive
+    lateral = in_vehicle(drive, drive.samples.f_s)[drive.samples.fix_row, 1][moving]
+    assert np.degrees(np.polyfit(lateral, slip, 1)[0] * GRAVITY) == pytest.approx(2.0, abs=0.3)
+
+
 @pytest.mark.parametrize("q_vs", [[1, 0, 0, 0], [0, 1, 0, 0], [0.5, 0.5, 0.5, 0.5], [0.9, 0.1, -0.3, 0.2]])
 def test_mounting_turns_readings_into_vehicle_axes(q_vs: list[float]) -> None:
     reference = simulate(replace(EXACT, mount=[1, 0, 0, 0], seconds=60)).samples
@@ -126,7 +146,7 @@ def test_device_away_from_the_turning_point_feels_the_turning() -> None:
     extra = in_vehicle(there, there.samples.f_s) - in_vehicle(here, here.samples.f_s)
     rivals = np.cross(dw_v, arm) + np.cross(w_v, np.cross(w_v, arm))
     assert np.max(np.abs(extra)) > 0.2
-    np.testing.assert_allclose(extra[1:-1], rivals[1:-1], atol=0.01)
+    np.testing.assert_allclose(extra[1:-1], rivals[1:-1], atol=1e-3)
     np.testing.assert_array_equal(there.truth.lever_arm, arm)
     np.testing.assert_array_equal(there.truth.antenna_arm, arm)
 
@@ -190,6 +210,15 @@ def test_sensor_errors_are_of_the_size_of_their_class(sensor: str) -> None:
         d.samples.f_s.mean(axis=0) - d.truth.bias - (1 + d.truth.scale) * gravity_in_sensor(d) for d in drives
     ]
     assert np.max(np.abs(residual)) < 0.06
+    scale, gyro_bias = (np.std([getattr(d.truth, name) for d in drives]) for name in ("scale", "gyro_bias"))
+    assert scale == pytest.approx(SENSORS[sensor].scale, rel=0.25)
+    assert gyro_bias == pytest.approx(SENSORS[sensor].gyro_bias, rel=0.25)
+
+
+def test_gyroscope_at_rest_reads_its_bias() -> None:
+    drive = simulate(Scenario(route="parked", seconds=20))
+    np.testing.assert_allclose(drive.samples.w_s.mean(axis=0), drive.truth.gyro_bias, atol=3e-4)
+    assert np.max(np.abs(drive.truth.gyro_bias)) > 2e-3
 
 
 def gravity_in_sensor(drive: Drive) -> Floats:
