@@ -55,7 +55,9 @@ class Page(Document, Generic[T]):
 class ProblemItem(Document):
     """One thing that is wrong, and where."""
 
-    pointer: str | None = Field(None, description="JSON pointer into the request: `/body/...`, `/query/...`, `/path/...`.")
+    pointer: str | None = Field(
+        None, description="JSON pointer into the request: `/body/...`, `/query/...`, `/path/...`."
+    )
     line: int | None = Field(None, description="Line of the log, from 1.")
     column: str | int | None = Field(None, description="Column of the log: its name, or its number from 1.")
     expected: str | None = None

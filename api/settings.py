@@ -39,10 +39,14 @@ class Settings(BaseSettings):
     gap_timeout: float = Field(
         600.0, gt=0, description="Seconds a chunk waits for a missing one before it before the gap is declared."
     )
-    max_waiting_chunks: int = Field(64, ge=1, le=1024, description="Chunks waiting in one session that declare the gap.")
+    max_waiting_chunks: int = Field(
+        64, ge=1, le=1024, description="Chunks waiting in one session that declare the gap."
+    )
     session_hours: float = Field(12.0, gt=0, le=720, description="Hours until a sign-in to the page ends.")
     history_days: float = Field(
-        90.0, gt=0, description="Days the angle history and the receipts of chunks are kept; mountings are kept for ever."
+        90.0,
+        gt=0,
+        description="Days the angle history and the receipts of chunks are kept; mountings are kept for ever.",
     )
     stream_minutes: float = Field(
         15.0, gt=0, description="Minutes a live stream that was cut off can be resumed without a gap."
@@ -80,4 +84,4 @@ def _default(value: Annotated[object, "a field's default"]) -> str:
 
 
 if __name__ == "__main__":
-    print(document(), end="")  # noqa: T201
+    print(document(), end="")

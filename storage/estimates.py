@@ -29,7 +29,13 @@ class Block(NamedTuple):
 
 
 def add(
-    tx: WriteSession, device_pk: int, session_pk: int, t: tuple[float, float], mark: tuple[int, int], rows: bytes, now: datetime
+    tx: WriteSession,
+    device_pk: int,
+    session_pk: int,
+    t: tuple[float, float],
+    mark: tuple[int, int],
+    rows: bytes,
+    now: datetime,
 ) -> None:
     """Append a block: `t` its first and last time on the session's clock, `mark` its rows and stage changes."""
     tx.insert(

@@ -42,9 +42,7 @@ def add(tx: WriteSession, installation: Installation) -> None:
 def save(tx: WriteSession, installation: Installation) -> None:
     """Store what evolves."""
     values = installation._asdict()
-    tx.execute(
-        sa.update(installations).where(installations.c.device_pk == values.pop("device_pk")).values(**values)
-    )
+    tx.execute(sa.update(installations).where(installations.c.device_pk == values.pop("device_pk")).values(**values))
 
 
 def touch(tx: WriteSession, device_pk: int) -> None:

@@ -36,12 +36,16 @@ def by_pk(tx: ReadSession, pk: int) -> Key | None:
 
 
 def add(
-    tx: WriteSession, digest: bytes, role: str, name: str, now: datetime, device_pk: int | None = None, source: str = "made"
+    tx: WriteSession,
+    digest: bytes,
+    role: str,
+    name: str,
+    now: datetime,
+    device_pk: int | None = None,
+    source: str = "made",
 ) -> int:
     """Store a key."""
-    return tx.insert(
-        api_keys, digest=digest, role=role, name=name, device_pk=device_pk, source=source, created_at=now
-    )
+    return tx.insert(api_keys, digest=digest, role=role, name=name, device_pk=device_pk, source=source, created_at=now)
 
 
 def any_of_role(tx: ReadSession, role: str) -> bool:

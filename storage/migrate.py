@@ -38,7 +38,12 @@ def config(connection: Connection | None = None) -> Config:
     return made
 
 
-@retry(retry=retry_if_exception_type(OperationalError), stop=stop_after_delay(30), wait=wait_random(0.01, 0.1), reraise=True)
+@retry(
+    retry=retry_if_exception_type(OperationalError),
+    stop=stop_after_delay(30),
+    wait=wait_random(0.01, 0.1),
+    reraise=True,
+)
 def _use_write_ahead_log(database: Database) -> None:
     """Switch the file to WAL, which it remembers; SQLite refuses at once while another process does the same."""
     connection = database.engine.raw_connection()

@@ -24,9 +24,7 @@ class Session(NamedTuple):
     started_at: datetime | None
 
 
-_select = sa.select(
-    sessions.c.pk, sessions.c.name, sessions.c.next_seq, sessions.c.context, sessions.c.started_at
-)
+_select = sa.select(sessions.c.pk, sessions.c.name, sessions.c.next_seq, sessions.c.context, sessions.c.started_at)
 
 
 def find_or_add(tx: WriteSession, device_pk: int, name: str, now: datetime) -> Session:

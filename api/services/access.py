@@ -88,6 +88,12 @@ def recognise(context: Context, cookie: str) -> Principal:
     return _principal(found)
 
 
+def is_valid(context: Context, principal: Principal) -> bool:
+    """Tell whether the key of somebody recognised earlier still holds."""
+    with context.database.read() as tx:
+        return keys.by_pk(tx, principal.key_pk) is not None
+
+
 def require(principal: Principal, role: Role) -> None:
     """Refuse whoever ranks below `role`."""
     if principal.role < role:

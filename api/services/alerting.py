@@ -11,9 +11,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import core
+from api import schemas
 from api.services import presenting, publishing
-from storage import alerts
-from storage.database import WriteSession
+from api.services.context import Context
+from api.services.errors import NotFoundError
+from storage import alerts, devices
+from storage.database import ReadSession, WriteSession
 
 ENDED_BY_CONFIRMATION = ("orientation_changed", "sensor_fault")
 SERVICE = "service"
@@ -70,3 +73,47 @@ def end(tx: WriteSession, device_pk: int, note: str, now: datetime) -> None:
     for alert in alerts.find_open(tx, device_pk, ENDED_BY_CONFIRMATION):
         alerts.resolve(tx, alert.pk, SERVICE, note, now)
         publishing.alert_changed(tx, alert.pk, now)
+
+
+def find(context: Context, pk: int) -> schemas.Alert:
+    """Give an alert."""
+    with context.database.read() as tx:
+        return presenting.alert(_found(tx, pk))
+
+
+def acknowledge(context: Context, pk: int, by: str, note: str | None) -> schemas.Alert:
+    """Record who has seen an open alert; one that was seen or is over stays as it is."""
+    return _settle(context, pk, by, note, (alerts.OPEN,), alerts.acknowledge)
+
+
+def resolve(context: Context, pk: int, by: str, note: str | None) -> schemas.Alert:
+    """Record who says that an alert is over; one that is over stays as it is."""
+    return _settle(context, pk, by, note, (alerts.OPEN, alerts.ACKNOWLEDGED), alerts.resolve)
+
+
+def _settle(
+    context: Context,
+    pk: int,
+    by: str,
+    note: str | None,
+    from_states: tuple[str, ...],
+    change: Callable[[WriteSession, int, str, str | None, datetime], None],
+) -> schemas.Alert:
+    now = context.clock()
+    with context.database.write() as tx:
+        device_id = _found(tx, pk).device_id
+        device_pk = devices.lock(tx, device_id)
+        if device_pk is not None and _found(tx, pk).state in from_states:
+            change(tx, pk, by, note, now)
+            publishing.alert_changed(tx, pk, now)
+            publishing.installation_touched(tx, device_pk, device_id, now)
+        shown = presenting.alert(_found(tx, pk))
+    context.wake()
+    return shown
+
+
+def _found(tx: ReadSession, pk: int) -> alerts.Alert:
+    row = alerts.find(tx, pk)
+    if row is None:
+        raise NotFoundError("There is no such alert.")
+    return row

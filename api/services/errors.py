@@ -73,3 +73,17 @@ class CursorError(ServiceError):
 
     kind = "invalid-cursor"
     title = "The cursor is not valid"
+
+
+class TooLargeError(ServiceError):
+    """More bytes than are taken."""
+
+    kind = "too-large"
+    title = "The chunk is too large"
+
+
+class StartingError(ServiceError):
+    """Not ready yet."""
+
+    kind = "starting"
+    title = "The service is starting"

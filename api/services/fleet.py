@@ -48,6 +48,15 @@ def _fresh(context: Context, device_pk: int, now: datetime) -> installations.Ins
     )
 
 
+def find(context: Context, device_id: str) -> schemas.Device:
+    """Give a device."""
+    with context.database.read() as tx:
+        row = devices.find(tx, device_id)
+    if row is None:
+        raise NotFoundError(UNKNOWN_DEVICE)
+    return presenting.device(row)
+
+
 def edit(context: Context, device_id: str, changes: dict[str, Any]) -> schemas.Device:
     """Change the texts of a device."""
     now = context.clock()

@@ -29,6 +29,12 @@ def installation_changed(tx: WriteSession, shown: schemas.Installation, now: dat
     events.add(tx, shown.device_id, "installation", shown.model_dump_json(), now)
 
 
+def installation_touched(tx: WriteSession, device_pk: int, device_id: str, now: datetime) -> None:
+    """Something shown with the installation has changed: raise its revision and tell."""
+    installations.touch(tx, device_pk)
+    installation_changed(tx, read_installation(tx, device_pk, device_id), now)
+
+
 def alert_changed(tx: WriteSession, pk: int, now: datetime) -> None:
     """Tell how an alert stands."""
     row = alerts.find(tx, pk)

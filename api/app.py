@@ -1,0 +1,116 @@
+"""The application: what it is made of, and what runs beside the requests."""
+
+import asyncio
+import logging
+import signal
+import sys
+import threading
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from dataclasses import replace
+from datetime import datetime
+from importlib.metadata import version
+from typing import Any, TypedDict
+
+from anyio import to_thread
+from fastapi import FastAPI
+
+from api import errors, headers, page
+from api.live import Hub
+from api.routes import api, service
+from api.services import housekeeping, startup
+from api.services.context import Context, utc_now
+from api.settings import Settings
+
+log = logging.getLogger(__name__)
+
+
+class State(TypedDict):
+    """What a request finds in `request.state`."""
+
+    context: Context
+    hub: Hub
+    ready: threading.Event
+
+
+def create_app(settings: Settings | None = None, clock: Callable[[], datetime] = utc_now) -> FastAPI:
+    """Make the application; settings come from the environment unless given."""
+    chosen = settings or Settings()
+    app = FastAPI(
+        title="Livella",
+        version=version("livella"),
+        description="Automatic mounting-angle calibration for vehicle black boxes.",
+        lifespan=lambda _: _lifespan(chosen, clock),
+        docs_url=None,
+        redoc_url=None,
+        responses=errors.RESPONSES,
+        generate_unique_id_function=lambda route: route.name,
+    )
+    errors.install(app)
+    app.include_router(service.router)
+    app.include_router(api)
+    app.router.default = page.Page(app.router.default)
+    app.add_middleware(headers.SecurityHeaders)
+    _describe(app)
+    return app
+
+
+def _describe(app: FastAPI) -> None:
+    generate = app.openapi
+
+    def openapi() -> dict[str, Any]:
+        return errors.describe(generate())
+
+    app.openapi = openapi  # type: ignore[method-assign]
+
+
+@asynccontextmanager
+async def _lifespan(settings: Settings, clock: Callable[[], datetime]) -> AsyncIterator[State]:
+    context = Context.make(settings, clock)
+    hub = Hub(context.database)
+    context = replace(context, wake=hub.wake)
+    first_key = await to_thread.run_sync(startup.prepare, context)
+    if first_key is not None:
+        print(f"First admin key, shown only once: {first_key}", file=sys.stderr, flush=True)
+    ready = threading.Event()
+    await hub.start()
+    tasks = [asyncio.create_task(work) for work in (_warm_up(context, ready), hub.run(), housekeeping.run(context))]
+    with _ending_with(hub.close):
+        yield State(context=context, hub=hub, ready=ready)
+    hub.close()
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+    context.database.close()
+
+
+async def _warm_up(context: Context, ready: threading.Event) -> None:
+    try:
+        await to_thread.run_sync(startup.warm_up, context)
+    except Exception:
+        log.exception("the estimator cannot be compiled; the service stays unready")
+        return
+    ready.set()
+
+
+@contextmanager
+def _ending_with(action: Callable[[], None]) -> Iterator[None]:
+    """Call `action` when the process is told to stop: the server then waits for open streams, which have to end."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    former = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+
+    def stop(number: int, frame: Any) -> None:
+        action()
+        handler = former[signal.Signals(number)]
+        if callable(handler):
+            handler(number, frame)
+
+    for number in former:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number, handler in former.items():
+            signal.signal(number, handler)

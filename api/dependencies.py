@@ -1,0 +1,137 @@
+"""What routes ask for: the context, who is calling, the body."""
+
+from typing import Annotated
+from urllib.parse import urlsplit
+
+from fastapi import Depends, Query, Request, Security
+from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
+
+from api.live import Hub
+from api.services import access, paging
+from api.services.access import Principal, Role
+from api.services.context import Context
+from api.services.errors import ForbiddenError, StartingError, TooLargeError, UnauthenticatedError
+
+COOKIE = "livella_session"
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+
+_bearer = HTTPBearer(auto_error=False, description="A key, as `Authorization: Bearer KEY`.")
+_cookie = APIKeyCookie(name=COOKIE, auto_error=False, description="Sign-in of the page, see `POST /api/v1/session`.")
+
+
+def get_context(request: Request) -> Context:
+    """Give what the services need."""
+    context: Context = request.state.context
+    return context
+
+
+def get_hub(request: Request) -> Hub:
+    """Give the live stream."""
+    hub: Hub = request.state.hub
+    return hub
+
+
+CurrentContext = Annotated[Context, Depends(get_context)]
+CurrentHub = Annotated[Hub, Depends(get_hub)]
+
+
+def get_principal(
+    request: Request,
+    context: CurrentContext,
+    bearer: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)],
+    cookie: Annotated[str | None, Security(_cookie)],
+) -> Principal:
+    """Tell who is calling: by key, or by the cookie of the page."""
+    if bearer is not None:
+        return access.authenticate(context, bearer.credentials)
+    if cookie is None:
+        raise UnauthenticatedError("Send a key as `Authorization: Bearer KEY`, or sign in.")
+    if request.method not in SAFE_METHODS and not is_same_origin(request):
+        raise ForbiddenError("A request with the page's sign-in has to come from the page itself.")
+    return access.recognise(context, cookie)
+
+
+def is_same_origin(request: Request) -> bool:
+    """Tell whether a browser says that the request comes from our own page; False when it says nothing."""
+    site = request.headers.get("sec-fetch-site")
+    if site is not None:
+        return site == "same-origin"
+    origin = request.headers.get("origin")
+    return origin is not None and urlsplit(origin).netloc == request.headers.get("host")
+
+
+def refuse_other_sites(request: Request) -> None:
+    """Refuse a request that another site makes a browser send; programs that are no browsers say nothing and may."""
+    said = request.headers.get("sec-fetch-site") or request.headers.get("origin")
+    if said is not None and not is_same_origin(request):
+        raise ForbiddenError("Sign in on the page itself.")
+
+
+Caller = Annotated[Principal, Depends(get_principal)]
+
+
+class Requires:
+    """Dependency: the caller has at least this role."""
+
+    def __init__(self, role: Role) -> None:
+        self.role = role
+
+    def __call__(self, principal: Caller) -> Principal:
+        """Let the caller in or not."""
+        access.require(principal, self.role)
+        return principal
+
+
+def own_device(device_id: str, principal: Caller) -> str:
+    """Give the device of the path, if the caller may see it: whether it exists is looked up only then."""
+    access.require_device(principal, device_id)
+    return device_id
+
+
+AnyDevice = Annotated[str, Depends(own_device)]
+Installer = Annotated[Principal, Depends(Requires(Role.INSTALLER))]
+Manager = Annotated[Principal, Depends(Requires(Role.MANAGER))]
+Admin = Annotated[Principal, Depends(Requires(Role.ADMIN))]
+
+
+async def read_body(request: Request, context: CurrentContext, _: AnyDevice) -> bytes:
+    """Read the body up to the limit, after the caller is known."""
+    limit = context.settings.max_chunk_bytes
+    stated = request.headers.get("content-length", "")
+    received = bytearray()
+    if stated.isdigit() and int(stated) > limit:
+        raise _too_large(limit)
+    async for part in request.stream():
+        received += part
+        if len(received) > limit:
+            raise _too_large(limit)
+    return bytes(received)
+
+
+def _too_large(limit: int) -> TooLargeError:
+    return TooLargeError(f"A chunk may have at most {limit} bytes as sent.")
+
+
+def ready(request: Request) -> None:
+    """Refuse work until the estimator is compiled."""
+    if not request.state.ready.is_set():
+        raise StartingError("The estimator is being compiled; try again in a moment.")
+
+
+Body = Annotated[bytes, Depends(read_body)]
+Limit = Annotated[int, Query(ge=1, le=500, description="Items on a page.")]
+Cursor = Annotated[str | None, Query(max_length=512, description="`next_cursor` of the page before.")]
+
+
+def cursor_text(cursor: Cursor = None) -> str | None:
+    """Give the text inside a cursor."""
+    return None if cursor is None else paging.decode(cursor)
+
+
+def cursor_number(cursor: Cursor = None) -> int | None:
+    """Give the number inside a cursor."""
+    return None if cursor is None else paging.decode_number(cursor)
+
+
+AfterText = Annotated[str | None, Depends(cursor_text)]
+BeforeNumber = Annotated[int | None, Depends(cursor_number)]

@@ -1,0 +1,53 @@
+"""Uploads."""
+
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Depends, Header, Query, Response
+
+from api import schemas
+from api.dependencies import AnyDevice, Body, CurrentContext, ready
+from api.formats import MEDIA_TYPES
+from api.services import ingest
+from storage import chunks
+
+router = APIRouter(prefix="/devices/{device_id}/chunks", tags=["chunks"])
+
+BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {kind: {"schema": {"type": "string", "format": "binary"}} for kind in MEDIA_TYPES},
+    }
+}
+MAX_SEQ = 2**31 - 2
+
+
+@router.post(
+    "",
+    dependencies=[Depends(ready)],
+    responses={202: {"model": schemas.Upload, "description": "Ahead of its turn: kept, and applied when it comes"}},
+    openapi_extra=BODY,
+)
+def upload_chunk(
+    device_id: AnyDevice,
+    body: Body,
+    context: CurrentContext,
+    response: Response,
+    session: Annotated[schemas.SessionName, Query(description="Made by the device at power-up.")],
+    seq: Annotated[int, Query(ge=0, le=MAX_SEQ, description="Number of the chunk in its session, from 0.")],
+    course: Annotated[
+        Literal["clockwise", "anticlockwise", "auto"], Query(description="Sense of the course in a thesis log.")
+    ] = "auto",
+    content_type: Annotated[str, Header(include_in_schema=False)] = "",
+    content_encoding: Annotated[str | None, Header(description="`gzip`, `zstd` or none.")] = None,
+) -> schemas.Upload:
+    """Upload one chunk of a log.
+
+    200: durably stored, its effect applied exactly once. 202: ahead of its turn, durably kept. The same chunk again has
+    no effect (`duplicate`). 409: another chunk has this number (`chunk-conflict`), or it comes too late, after its gap
+    was declared lost (`sequence-passed`) or a newer session began (`session-ended`): do not send it again.
+    """
+    sent = chunks.Body(body, content_type, content_encoding, course)
+    answer = ingest.receive(context, device_id, ingest.Chunk(session, seq, sent))
+    if answer.chunk.state == chunks.WAITING:
+        response.status_code = 202
+    return answer

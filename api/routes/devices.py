@@ -1,0 +1,54 @@
+"""Devices."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Path, Query
+
+from api import schemas
+from api.dependencies import AfterText, CurrentContext, Limit, Requires
+from api.services import fleet, paging, presenting
+from api.services.access import Role
+from storage import devices
+
+router = APIRouter(prefix="/devices", tags=["devices"], dependencies=[Depends(Requires(Role.INSTALLER))])
+
+DevicePath = Annotated[str, Path(max_length=64)]
+
+
+@router.post("", status_code=201)
+def register_device(draft: schemas.DeviceDraft, context: CurrentContext) -> schemas.RegisteredDevice:
+    """Register a device. Its key is shown only in this answer."""
+    return fleet.register(context, draft)
+
+
+@router.get("")
+def list_devices(
+    context: CurrentContext,
+    after: AfterText,
+    q: Annotated[str | None, Query(max_length=128, description="Found in id, name, vehicle or notes.")] = None,
+    stage: schemas.StageName | None = None,
+    has_open_alert: bool | None = None,
+    limit: Limit = 100,
+) -> schemas.Page[schemas.Device]:
+    """List devices in the order of their ids."""
+    with context.database.read() as tx:
+        rows = devices.page(tx, limit + 1, after, q, stage, has_open_alert)
+    return paging.page(rows, limit, lambda row: row.id, presenting.device)
+
+
+@router.get("/{device_id}")
+def read_device(device_id: DevicePath, context: CurrentContext) -> schemas.Device:
+    """Read a device."""
+    return fleet.find(context, device_id)
+
+
+@router.patch("/{device_id}")
+def edit_device(device_id: DevicePath, patch: schemas.DevicePatch, context: CurrentContext) -> schemas.Device:
+    """Change name, vehicle or notes; what is left out stays, null clears vehicle or notes."""
+    return fleet.edit(context, device_id, patch.model_dump(exclude_unset=True))
+
+
+@router.delete("/{device_id}", status_code=204)
+def remove_device(device_id: DevicePath, context: CurrentContext) -> None:
+    """Remove a device with its key, its history and its alerts."""
+    fleet.remove(context, device_id)
