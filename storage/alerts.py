@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import alerts, devices
+from storage.models import alert_unresolved, alerts, devices
 
 OPEN, ACKNOWLEDGED, RESOLVED = "open", "acknowledged", "resolved"
 
@@ -22,7 +22,7 @@ class Alert(NamedTuple):
     state: str
     opened_at: datetime
     updated_at: datetime
-    count: int
+    occurrences: int
     message: str
     data: dict[str, Any]
     acknowledged_at: datetime | None
@@ -65,7 +65,7 @@ def find(tx: ReadSession, pk: int) -> Alert | None:
 
 def find_open(tx: ReadSession, device_pk: int, kinds: Sequence[str]) -> list[Alert]:
     """Give the alerts of a device of these kinds that are not resolved."""
-    unresolved = (alerts.c.device_pk == device_pk, alerts.c.state != RESOLVED, alerts.c.kind.in_(kinds))
+    unresolved = (alerts.c.device_pk == device_pk, alert_unresolved, alerts.c.kind.in_(kinds))
     return tx.all(Alert, _select.where(*unresolved).order_by(alerts.c.pk))
 
 
@@ -87,11 +87,11 @@ def page(tx: ReadSession, limit: int, before: int | None, wanted: Filter) -> lis
 def raise_(tx: WriteSession, device_pk: int, finding: Finding, now: datetime) -> int:
     """Open an alert, or count it once more when one of this kind is open; give its number."""
     for alert in find_open(tx, device_pk, [finding.kind]):
-        values = finding._asdict() | {"count": alert.count + 1, "updated_at": now}
+        values = finding._asdict() | {"occurrences": alert.occurrences + 1, "updated_at": now}
         tx.execute(sa.update(alerts).where(alerts.c.pk == alert.pk).values(**values))
         return alert.pk
     return tx.insert(
-        alerts, device_pk=device_pk, state=OPEN, opened_at=now, updated_at=now, count=1, **finding._asdict()
+        alerts, device_pk=device_pk, state=OPEN, opened_at=now, updated_at=now, occurrences=1, **finding._asdict()
     )
 
 
@@ -111,7 +111,7 @@ def counts(tx: ReadSession, device_pk: int | None = None) -> list[tuple[str, str
     """Count alerts that are not resolved: (kind, severity, count)."""
     statement = (
         sa.select(alerts.c.kind, alerts.c.severity, sa.func.count())
-        .where(alerts.c.state != RESOLVED)
+        .where(alert_unresolved)
         .group_by(alerts.c.kind, alerts.c.severity)
     )
     if device_pk is not None:
@@ -121,5 +121,5 @@ def counts(tx: ReadSession, device_pk: int | None = None) -> list[tuple[str, str
 
 def count_open(tx: ReadSession, device_pk: int) -> int:
     """Count the alerts of a device that are not resolved."""
-    statement = sa.select(sa.func.count()).where(alerts.c.device_pk == device_pk, alerts.c.state != RESOLVED)
+    statement = sa.select(sa.func.count()).where(alerts.c.device_pk == device_pk, alert_unresolved)
     return int(tx.value(statement))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import chunks, devices, sessions
+from storage.models import chunk_waits, chunks, devices, sessions
 
 APPLIED, WAITING = "applied", "waiting"
 
@@ -36,7 +36,7 @@ class Body(NamedTuple):
 class Waiting(NamedTuple):
     """What waits in a session."""
 
-    count: int
+    number: int
     first_seq: int | None
     since: datetime | None
 
@@ -77,7 +77,7 @@ def settle(tx: WriteSession, receipt: Receipt) -> None:
 def waiting(tx: ReadSession, session_pk: int) -> Waiting:
     """Tell what waits in a session."""
     statement = sa.select(sa.func.count(), sa.func.min(chunks.c.seq), sa.func.min(chunks.c.received_at))
-    found = tx.one(Waiting, statement.where(chunks.c.session_pk == session_pk, chunks.c.state == WAITING))
+    found = tx.one(Waiting, statement.where(chunks.c.session_pk == session_pk, chunk_waits))
     return found or Waiting(0, None, None)
 
 
@@ -87,7 +87,7 @@ def sessions_waiting(tx: ReadSession, device_pk: int) -> list[int]:
         sa.select(sessions.c.pk)
         .where(
             sessions.c.device_pk == device_pk,
-            sa.exists().where(chunks.c.session_pk == sessions.c.pk, chunks.c.state == WAITING),
+            sa.exists().where(chunks.c.session_pk == sessions.c.pk, chunk_waits),
         )
         .order_by(sessions.c.pk)
     )
@@ -101,11 +101,11 @@ def devices_waiting_since(tx: ReadSession, moment: datetime) -> list[str]:
         .distinct()
         .join_from(chunks, sessions)
         .join(devices)
-        .where(chunks.c.state == WAITING, chunks.c.received_at <= moment)
+        .where(chunk_waits, chunks.c.received_at <= moment)
     )
     return tx.all(str, statement)
 
 
 def forget(tx: WriteSession, before: datetime) -> int:
     """Remove the receipts of chunks that came in before a moment and were settled."""
-    return tx.execute(sa.delete(chunks).where(chunks.c.received_at < before, chunks.c.state != WAITING)).rowcount
+    return tx.execute(sa.delete(chunks).where(chunks.c.received_at < before, chunks.c.state == APPLIED)).rowcount

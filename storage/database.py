@@ -1,4 +1,4 @@
-"""The database: SQLite (WAL, synchronous FULL) or PostgreSQL, read and write sessions as two types, one commit point."""
+"""The database, SQLite or PostgreSQL: read and write sessions as two types, and one commit point."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -26,16 +26,16 @@ class ReadSession:
         """True on PostgreSQL, False on SQLite."""
         return self.connection.dialect.name == "postgresql"
 
-    def one(self, make: Callable[..., T], statement: sa.Select[Any]) -> T | None:
+    def one(self, make: Callable[..., T], statement: sa.Executable) -> T | None:
         """Give the first row as `make(*row)`, or None."""
         row = self.connection.execute(statement).first()
         return None if row is None else make(*row)
 
-    def all(self, make: Callable[..., T], statement: sa.Select[Any]) -> list[T]:
+    def all(self, make: Callable[..., T], statement: sa.Executable) -> list[T]:
         """Give every row as `make(*row)`."""
         return [make(*row) for row in self.connection.execute(statement)]
 
-    def value(self, statement: sa.Select[Any]) -> Any:
+    def value(self, statement: sa.Executable) -> Any:
         """Give the first column of the first row, or None."""
         return self.connection.execute(statement).scalar()
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import alerts, devices, installations, mounts
+from storage.models import alert_unresolved, alerts, devices, installations, mounts
 
 
 class Device(NamedTuple):
@@ -28,7 +28,7 @@ class Device(NamedTuple):
 
 open_alerts = (
     sa.select(sa.func.count())
-    .where(alerts.c.device_pk == devices.c.pk, alerts.c.state != "resolved")
+    .where(alerts.c.device_pk == devices.c.pk, alert_unresolved)
     .correlate(devices)
     .scalar_subquery()
 )

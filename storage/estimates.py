@@ -1,4 +1,4 @@
-"""Angle history: a block of rows per chunk, packed (bytes to us), which makes a chunk one insert and a chart few reads."""
+"""Angle history: a block of rows per chunk, packed (bytes to us): a chunk is one insert, a chart few reads."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -14,7 +14,7 @@ class Mark(NamedTuple):
     """What is known of a block without reading it."""
 
     pk: int
-    count: int
+    size: int
     """rows"""
     changes: int
     """rows whose stage differs from that of the row before"""
@@ -30,7 +30,6 @@ class Block(NamedTuple):
 
 def add(
     tx: WriteSession,
-    device_pk: int,
     session_pk: int,
     t: tuple[float, float],
     mark: tuple[int, int],
@@ -40,18 +39,17 @@ def add(
     """Append a block: `t` its first and last time on the session's clock, `mark` its rows and stage changes."""
     tx.insert(
         estimates,
-        device_pk=device_pk,
         session_pk=session_pk,
         t_first=t[0],
         t_last=t[1],
-        count=mark[0],
+        size=mark[0],
         changes=mark[1],
         rows=rows,
         received_at=now,
     )
 
 
-def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[float]:
+def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[Any]:
     """Time of a column on the session's clock, in microseconds UTC."""
     return sa.type_coerce(sessions.c.started_at, sa.BigInteger) + column * 1e6
 
@@ -63,9 +61,9 @@ def _instant(moment: datetime) -> sa.ColumnElement[Any]:
 def marks(tx: ReadSession, device_pk: int, start: datetime | None, end: datetime | None) -> list[Mark]:
     """Give the marks of the blocks that overlap [start, end], in time order."""
     statement = (
-        sa.select(estimates.c.pk, estimates.c.count, estimates.c.changes)
+        sa.select(estimates.c.pk, estimates.c.size, estimates.c.changes)
         .join_from(estimates, sessions)
-        .where(estimates.c.device_pk == device_pk)
+        .where(sessions.c.device_pk == device_pk)
         .order_by(estimates.c.pk)
     )
     if start is not None:

@@ -50,8 +50,8 @@ def _device(**options: Any) -> sa.Column[int]:
     return sa.Column("device_pk", BIG, sa.ForeignKey("devices.pk", ondelete="CASCADE"), **options)
 
 
-def _session(name: str = "session_pk", **options: Any) -> sa.Column[int]:
-    return sa.Column(name, BIG, sa.ForeignKey("sessions.pk", ondelete="CASCADE"), **options)
+def _session(**options: Any) -> sa.Column[int]:
+    return sa.Column("session_pk", BIG, sa.ForeignKey("sessions.pk", ondelete="CASCADE"), **options)
 
 
 meta = sa.Table(
@@ -117,21 +117,18 @@ chunks = sa.Table(
     sa.Column("course", sa.String(16)),
     sa.Index("ix_chunks_received_at", "received_at"),
 )
-sa.Index(
-    "ix_chunks_waiting",
-    chunks.c.received_at,
-    sqlite_where=chunks.c.state == "waiting",
-    postgresql_where=chunks.c.state == "waiting",
-)
+chunk_waits = chunks.c.state == sa.literal_column("'waiting'")
+"""As written in the index, so that queries find it."""
+sa.Index("ix_chunks_waiting", chunks.c.session_pk, sqlite_where=chunk_waits, postgresql_where=chunk_waits)
 
 installations = sa.Table(
     "installations",
     metadata,
     _device(primary_key=True),
     sa.Column("snapshot", sa.LargeBinary),
-    _session(),
+    sa.Column("session_pk", BIG),  # no foreign key: it would cost an index, and the row goes with its device anyway
     sa.Column("stage", sa.String(16), nullable=False, index=True),
-    _session("since_session_pk"),
+    sa.Column("since_session_pk", BIG),
     sa.Column("since_t", sa.Double),
     sa.Column("since_at", Instant, nullable=False),
     sa.Column("status", sa.JSON, nullable=False),
@@ -143,15 +140,14 @@ estimates = sa.Table(
     "estimates",
     metadata,
     sa.Column("pk", BIG, primary_key=True),
-    _device(nullable=False),
     _session(nullable=False),
     sa.Column("t_first", sa.Double, nullable=False),
     sa.Column("t_last", sa.Double, nullable=False),
-    sa.Column("count", sa.Integer, nullable=False),
+    sa.Column("size", sa.Integer, nullable=False),
     sa.Column("changes", sa.Integer, nullable=False),
     sa.Column("rows", sa.LargeBinary, nullable=False),
     sa.Column("received_at", Instant, nullable=False, index=True),
-    sa.Index("ix_estimates_device_pk_pk", "device_pk", "pk"),
+    sa.Index("ix_estimates_session_pk_pk", "session_pk", "pk"),
     sqlite_autoincrement=True,
 )
 
@@ -160,7 +156,7 @@ mounts = sa.Table(
     metadata,
     _device(primary_key=True),
     sa.Column("n", sa.Integer, primary_key=True, autoincrement=False),
-    _session(nullable=False),
+    _session(nullable=False, index=True),
     sa.Column("t", sa.Double, nullable=False),
     sa.Column("quaternion", sa.JSON, nullable=False),
     sa.Column("sigma_deg", sa.JSON, nullable=False),
@@ -178,7 +174,7 @@ alerts = sa.Table(
     sa.Column("state", sa.String(16), nullable=False),
     sa.Column("opened_at", Instant, nullable=False),
     sa.Column("updated_at", Instant, nullable=False),
-    sa.Column("count", sa.Integer, nullable=False),
+    sa.Column("occurrences", sa.Integer, nullable=False),
     sa.Column("message", sa.Text, nullable=False),
     sa.Column("data", sa.JSON, nullable=False),
     sa.Column("acknowledged_at", Instant),
@@ -187,15 +183,18 @@ alerts = sa.Table(
     sa.Column("resolved_at", Instant),
     sa.Column("resolved_by", NAME),
     sa.Column("resolve_note", sa.Text),
+    sa.Index("ix_alerts_device_pk_pk", "device_pk", "pk"),
     sqlite_autoincrement=True,
 )
+alert_unresolved = alerts.c.state != sa.literal_column("'resolved'")
+"""As written in the index, so that queries find it."""
 sa.Index(
-    "uq_alerts_open",
+    "uq_alerts_unresolved",
     alerts.c.device_pk,
     alerts.c.kind,
     unique=True,
-    sqlite_where=alerts.c.state != "resolved",
-    postgresql_where=alerts.c.state != "resolved",
+    sqlite_where=alert_unresolved,
+    postgresql_where=alert_unresolved,
 )
 
 events = sa.Table(

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import AsyncIterator
-from typing import Annotated
+from typing import Annotated, Any
 
 from anyio import to_thread
 from fastapi import APIRouter, Header
@@ -39,9 +39,9 @@ async def stream(
     start = Position.parse(last_event_id or "")
     if last_event_id and (start is None or await to_thread.run_sync(_is_lost, context, start)):
         start = None
-        yield ServerSentEvent(event="reset", data={})
+        yield _message(event="reset", data={})
     start = start or hub.position
-    yield ServerSentEvent(comment="connected", id=str(start), retry=RETRY_MS)
+    yield _message(comment="connected", id=str(start), retry=RETRY_MS)
     checked = time.monotonic()
     async for batch in hub.follow(start):
         if time.monotonic() - checked > CHECK_INTERVAL:
@@ -50,7 +50,12 @@ async def stream(
                 return
         for event in batch:
             if _may_see(principal, event):
-                yield ServerSentEvent(raw_data=event.data, event=event.type, id=str(event.position))
+                yield _message(raw_data=event.data, event=event.type, id=str(event.position))
+
+
+def _message(**fields: Any) -> Any:
+    """Make a message; untyped because the annotation of `stream` names the data in it, for the API's description."""
+    return ServerSentEvent(**fields)
 
 
 def _is_lost(context: Context, position: Position) -> bool:

@@ -39,15 +39,13 @@ def pack(rows: core.Estimates) -> Rows:
     return packed
 
 
-def append(
-    tx: WriteSession, device_pk: int, session_pk: int, rows: core.Estimates, stage_before: int, now: datetime
-) -> None:
+def append(tx: WriteSession, session_pk: int, rows: core.Estimates, stage_before: int, now: datetime) -> None:
     """Append the estimates of a chunk."""
     if rows.t.size == 0:
         return
     changes = int(np.count_nonzero(np.diff(rows.stage, prepend=stage_before)))
     span = (float(rows.t[0]), float(rows.t[-1]))
-    estimates.add(tx, device_pk, session_pk, span, (rows.t.size, changes), pack(rows).tobytes(), now)
+    estimates.add(tx, session_pk, span, (rows.t.size, changes), pack(rows).tobytes(), now)
 
 
 def read(
@@ -67,7 +65,7 @@ def read(
 
 def choose_blocks(marks: Sequence[estimates.Mark], max_points: int) -> list[int]:
     """Choose which blocks to read: all of a short history; of a long one evenly, and those where the stage changes."""
-    step = max(1, sum(mark.count for mark in marks) // (OVERSAMPLING * max_points))
+    step = max(1, sum(mark.size for mark in marks) // (OVERSAMPLING * max_points))
     last = len(marks) - 1
     return [mark.pk for i, mark in enumerate(marks) if i % step == 0 or i == last or mark.changes]
 

@@ -2,8 +2,8 @@
 
 Chunks of a session take effect in the order of their numbers, exactly once. One that is ahead of its turn waits,
 durably; the gap before it is declared lost when the oldest waiting chunk has waited `gap_timeout`, when
-`max_waiting_chunks` wait, or when a newer session begins. Then time goes on: a chunk for a gap declared lost, like one of
-a session that has ended, is refused, because applying it would run time backwards.
+`max_waiting_chunks` wait, or when a newer session begins. Then time goes on: a chunk for a gap declared lost, like
+one of a session that has ended, is refused, because applying it would run time backwards.
 """
 
 import logging
@@ -158,7 +158,7 @@ def _drain(calibration: Calibration, session_pk: int, declare_gaps: bool) -> Non
 
 def _overdue(calibration: Calibration, waiting: Waiting) -> bool:
     context = calibration.context
-    too_many = waiting.count >= context.settings.max_waiting_chunks
+    too_many = waiting.number >= context.settings.max_waiting_chunks
     return too_many or (waiting.since is not None and waiting.since <= calibration.now - _gap_timeout(context))
 
 

@@ -135,7 +135,7 @@ def device(row: devices.Device) -> schemas.Device:
 def alert(row: alerts.Alert) -> schemas.Alert:
     """Give an alert."""
     shown = row._asdict()
-    return schemas.Alert.model_validate({"id": shown.pop("pk")} | shown)
+    return schemas.Alert.model_validate({"id": shown.pop("pk"), "count": shown.pop("occurrences")} | shown)
 
 
 def utc(started_at: datetime, t: float) -> datetime:
