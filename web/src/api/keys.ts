@@ -1,0 +1,24 @@
+/** Names of what is cached. Everything of one device stands below `device(id)`. */
+export interface DeviceFilter {
+  q: string;
+  stage: string;
+  hasOpenAlert: boolean;
+}
+
+export interface TimeRange {
+  from: string | null;
+  to: string | null;
+}
+
+export const keys = {
+  session: ["session"],
+  summary: ["summary"],
+  devices: ["devices"],
+  deviceList: (filter: DeviceFilter) => ["devices", filter],
+  device: (id: string) => ["device", id],
+  installation: (id: string) => ["device", id, "installation"],
+  estimates: (id: string) => ["device", id, "estimates"],
+  estimatesIn: (id: string, range: TimeRange) => ["device", id, "estimates", range],
+  mounts: (id: string) => ["device", id, "mounts"],
+  alerts: (id: string) => ["device", id, "alerts"],
+} as const;

@@ -1,0 +1,127 @@
+/** The one file that is live: server-sent events keep the cache of `queries.ts` true. */
+import type { QueryClient, QueryKey } from "@tanstack/react-query";
+import { apply, type LiveEvent } from "./apply";
+import { keys } from "./keys";
+
+export type LiveStatus = "connecting" | "live" | "reconnecting";
+
+const TYPES = ["installation", "alert", "device"] as const;
+
+/** ms; events are applied together, so that a busy fleet does not make the page flicker. */
+const BATCH = 150;
+/** ms; what is not in an event itself is read again at most this often. */
+const REFETCH = 2000;
+/** ms; the browser reconnects by itself except after a refusal; then wait this long, doubling. */
+const RETRY = { first: 1000, longest: 30_000 };
+/** ms; a page that nobody looks at lets go of its connection after this. */
+const HIDDEN = 30_000;
+
+type Timer = ReturnType<typeof setTimeout> | undefined;
+
+/** Open the stream and keep it open; gives the function that closes it. */
+export function connect(client: QueryClient, onStatus: (status: LiveStatus) => void): () => void {
+  const stream = new LiveStream(client, onStatus);
+  stream.open();
+  document.addEventListener("visibilitychange", stream.onVisibility);
+  return () => {
+    document.removeEventListener("visibilitychange", stream.onVisibility);
+    stream.stop();
+  };
+}
+
+class LiveStream {
+  private readonly refetch: Refetch;
+  private source: EventSource | undefined;
+  private delay = RETRY.first;
+  private waiting: LiveEvent[] = [];
+  private batch: Timer;
+  private retry: Timer;
+  private hide: Timer;
+
+  constructor(
+    private readonly client: QueryClient,
+    private readonly onStatus: (status: LiveStatus) => void,
+  ) {
+    this.refetch = new Refetch(client);
+  }
+
+  open(): void {
+    this.close();
+    const source = new EventSource("/api/v1/stream");
+    source.onopen = () => this.opened();
+    source.onerror = () => this.dropped(source);
+    for (const type of TYPES) {
+      source.addEventListener(type, (message: MessageEvent<string>) => this.receive(type, message.data));
+    }
+    this.source = source;
+  }
+
+  close(): void {
+    clearTimeout(this.retry);
+    this.source?.close();
+    this.source = undefined;
+  }
+
+  stop(): void {
+    for (const timer of [this.hide, this.batch]) clearTimeout(timer);
+    this.refetch.stop();
+    this.close();
+  }
+
+  readonly onVisibility = (): void => {
+    clearTimeout(this.hide);
+    if (document.hidden) this.hide = setTimeout(() => this.close(), HIDDEN);
+    else if (!this.source) this.open();
+  };
+
+  /** Whatever happened before the stream was open, or while it was away, is read again; then events resume. */
+  private opened(): void {
+    this.delay = RETRY.first;
+    this.onStatus("live");
+    this.client.invalidateQueries({ predicate: ({ queryKey }) => queryKey[0] !== keys.session[0] });
+  }
+
+  private dropped(source: EventSource): void {
+    this.onStatus("reconnecting");
+    if (source.readyState !== EventSource.CLOSED) return;
+    this.retry = setTimeout(() => this.open(), this.delay);
+    this.delay = Math.min(this.delay * 2, RETRY.longest);
+  }
+
+  private receive(type: LiveEvent["type"], data: string): void {
+    this.waiting.push({ type, data: JSON.parse(data) } as LiveEvent);
+    this.batch ??= setTimeout(() => this.flush(), BATCH);
+  }
+
+  private flush(): void {
+    this.batch = undefined;
+    const events = this.waiting;
+    this.waiting = [];
+    for (const event of events) apply(this.client, event, (key) => this.refetch.soon(key));
+  }
+}
+
+/** Reads again what was named, each key at most once every `REFETCH` ms and never forgotten. */
+class Refetch {
+  private readonly named = new Map<string, QueryKey>();
+  private timer: Timer;
+  private last = 0;
+
+  constructor(private readonly client: QueryClient) {}
+
+  soon(key: QueryKey): void {
+    this.named.set(JSON.stringify(key), key);
+    this.timer ??= setTimeout(() => this.now(), Math.max(0, this.last + REFETCH - Date.now()));
+  }
+
+  stop(): void {
+    clearTimeout(this.timer);
+  }
+
+  private now(): void {
+    this.timer = undefined;
+    this.last = Date.now();
+    for (const queryKey of this.named.values()) this.client.invalidateQueries({ queryKey });
+    this.named.clear();
+  }
+}

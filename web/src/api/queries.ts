@@ -1,0 +1,114 @@
+/** What the page reads and does, as TanStack queries. Live updates come in through `live.ts`. */
+import {
+  keepPreviousData,
+  replaceEqualDeep,
+  useInfiniteQuery,
+  useMutation,
+  useQuery,
+  useQueryClient,
+} from "@tanstack/react-query";
+import { answer, http } from "./http";
+import { type DeviceFilter, keys, type TimeRange } from "./keys";
+import { newer } from "./merge";
+import type { DeviceDraft, Installation, Stage } from "./types";
+
+const PAGE = 100;
+/** Points of the angle history asked for: about one for every two pixels of a wide chart. */
+const MAX_POINTS = 800;
+
+export function useDevices(filter: DeviceFilter) {
+  return useInfiniteQuery({
+    queryKey: keys.deviceList(filter),
+    queryFn: ({ pageParam }) =>
+      answer(http.GET("/api/v1/devices", { params: { query: listQuery(filter, pageParam) } })),
+    initialPageParam: null as string | null,
+    getNextPageParam: (page) => page.next_cursor,
+    placeholderData: keepPreviousData,
+  });
+}
+
+function listQuery(filter: DeviceFilter, cursor: string | null) {
+  return {
+    limit: PAGE,
+    ...(filter.q && { q: filter.q }),
+    ...(filter.stage && { stage: filter.stage as Stage }),
+    ...(filter.hasOpenAlert && { has_open_alert: true }),
+    ...(cursor && { cursor }),
+  };
+}
+
+export function useSummary() {
+  return useQuery({ queryKey: keys.summary, queryFn: () => answer(http.GET("/api/v1/fleet/summary")) });
+}
+
+const of = (device_id: string) => ({ params: { path: { device_id } } });
+
+export function useDevice(id: string, enabled: boolean) {
+  return useQuery({
+    queryKey: keys.device(id),
+    queryFn: () => answer(http.GET("/api/v1/devices/{device_id}", of(id))),
+    enabled,
+  });
+}
+
+export function useInstallation(id: string) {
+  return useQuery({
+    queryKey: keys.installation(id),
+    queryFn: () => answer(http.GET("/api/v1/devices/{device_id}/installation", of(id))),
+    structuralSharing: (known, told) =>
+      replaceEqualDeep(known, newer(known as Installation | undefined, told as Installation)),
+  });
+}
+
+export function useEstimates(id: string, range: TimeRange) {
+  const query = {
+    max_points: MAX_POINTS,
+    ...(range.from && { from: range.from }),
+    ...(range.to && { to: range.to }),
+  };
+  return useQuery({
+    queryKey: keys.estimatesIn(id, range),
+    queryFn: () =>
+      answer(
+        http.GET("/api/v1/devices/{device_id}/estimates", { params: { path: { device_id: id }, query } }),
+      ),
+    placeholderData: keepPreviousData,
+  });
+}
+
+export function useMounts(id: string) {
+  return useQuery({
+    queryKey: keys.mounts(id),
+    queryFn: () => answer(http.GET("/api/v1/devices/{device_id}/mounts", of(id))),
+  });
+}
+
+export function useDeviceAlerts(id: string, enabled: boolean) {
+  return useQuery({
+    queryKey: keys.alerts(id),
+    queryFn: () => answer(http.GET("/api/v1/alerts", { params: { query: { device_id: id, limit: PAGE } } })),
+    enabled,
+  });
+}
+
+export function useRegister() {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: (draft: DeviceDraft) => answer(http.POST("/api/v1/devices", { body: draft })),
+    onSuccess: () => {
+      client.invalidateQueries({ queryKey: keys.devices });
+      client.invalidateQueries({ queryKey: keys.summary });
+    },
+  });
+}
+
+export function useRestart(id: string) {
+  const client = useQueryClient();
+  return useMutation({
+    mutationFn: () => answer(http.POST("/api/v1/devices/{device_id}/installation/restart", of(id))),
+    onSuccess: (installation) => {
+      client.setQueryData(keys.installation(id), installation);
+      client.invalidateQueries({ queryKey: keys.device(id) });
+    },
+  });
+}

@@ -1,0 +1,26 @@
+/** Short names for the generated types. */
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
+
+export type Alert = Schemas["Alert"];
+export type Device = Schemas["Device"];
+export type DeviceDraft = Schemas["DeviceDraft"];
+export type Estimate = Schemas["Estimate"];
+export type Estimates = Schemas["Estimates"];
+export type FleetSummary = Schemas["FleetSummary"];
+export type Installation = Schemas["Installation"];
+export type Mount = Schemas["Mount"];
+export type RegisteredDevice = Schemas["RegisteredDevice"];
+export type SignedIn = Schemas["SignedIn"];
+export type Verification = Schemas["Verification"];
+
+export type Stage = Installation["stage"];
+export type Need = Installation["needs"][number];
+export type Role = SignedIn["role"];
+
+/** One page of a list. */
+export interface Page<T> {
+  items: T[];
+  next_cursor: string | null;
+}

@@ -1,0 +1,55 @@
+import { Button, Skeleton, Stack } from "@mantine/core";
+import { CircleAlert, type LucideIcon, RotateCw } from "lucide-react";
+import type { ReactNode } from "react";
+import css from "./states.module.css";
+import { Notice } from "./Tone";
+
+/** Grey bars where the content will be. They appear late, so that a quick answer does not flicker. */
+export function Loading({ what, lines = 3 }: { what: string; lines?: number }) {
+  return (
+    <div className={css.loading} role="status" aria-label={`Loading ${what}`}>
+      <Stack gap="sm">
+        {Array.from({ length: lines }, (_, line) => `${90 - 13 * (line % 4)}%`).map((width, line) => (
+          // biome-ignore lint/suspicious/noArrayIndexKey: the bars have no identity
+          <Skeleton key={line} height={line === 0 ? 28 : 16} width={width} />
+        ))}
+      </Stack>
+    </div>
+  );
+}
+
+interface EmptyProps {
+  icon: LucideIcon;
+  title: string;
+  children?: ReactNode;
+}
+
+export function Empty({ icon: Icon, title, children }: EmptyProps) {
+  return (
+    <div className={css.empty}>
+      <Icon size={36} strokeWidth={1.5} aria-hidden />
+      <p className={css.emptyTitle}>{title}</p>
+      {children}
+    </div>
+  );
+}
+
+/** What went wrong, in the service's words, and a way to try again. */
+export function Failed({ what, error, retry }: { what: string; error: Error; retry?: () => void }) {
+  return (
+    <Notice tone="bad" icon={CircleAlert} title={`Could not load ${what}`} role="alert">
+      <p>{error.message}</p>
+      {retry && (
+        <Button
+          mt="sm"
+          size="sm"
+          variant="default"
+          leftSection={<RotateCw size={16} aria-hidden />}
+          onClick={retry}
+        >
+          Try again
+        </Button>
+      )}
+    </Notice>
+  );
+}

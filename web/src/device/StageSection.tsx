@@ -1,0 +1,61 @@
+import { CircleCheckBig, TriangleAlert } from "lucide-react";
+import type { Installation, Need } from "../api/types";
+import { ClockTime } from "../components/RelativeTime";
+import { Progress } from "../components/StageBadge";
+import { Notice } from "../components/Tone";
+import { NEED, STAGE } from "../lib/stages";
+import { Stepper } from "./Stepper";
+import css from "./stage.module.css";
+
+/** The answer to "what now?", large enough to read at arm's length. */
+export function StageSection({ installation }: { installation: Installation }) {
+  const { stage, hint, needs, progress, mount } = installation;
+  return (
+    <section className={`card ${css.stage}`} data-stage={stage} aria-label="Stage of the calibration">
+      <Stepper stage={stage} />
+      <div className={css.now}>
+        {stage === "confirmed" && <CircleCheckBig size={40} className={css.check} aria-hidden />}
+        <p className={css.hint}>{hint}</p>
+      </div>
+      {mount?.status === "suspect" && <Suspect since={mount.confirmed_at} />}
+      {needs.length > 0 && <Needs needs={needs} />}
+      <div className={css.progress}>
+        <Progress stage={stage} progress={progress} />
+        <span aria-hidden>{Math.round(progress * 100)} %</span>
+      </div>
+      <p className="mantine-visually-hidden" role="status">
+        Stage: {STAGE[stage].word}. {hint}
+      </p>
+    </section>
+  );
+}
+
+function Suspect({ since }: { since: string }) {
+  return (
+    <Notice tone="bad" icon={TriangleAlert} title="The device seems to have moved">
+      <p>
+        The mounting confirmed on <ClockTime at={since} /> is kept but no longer trusted until a new one is
+        confirmed.
+      </p>
+    </Notice>
+  );
+}
+
+function Needs({ needs }: { needs: readonly Need[] }) {
+  return (
+    <div className={css.needs}>
+      <h2>Still needed</h2>
+      <ul>
+        {needs.map((need) => {
+          const { word, icon: Icon } = NEED[need];
+          return (
+            <li key={need}>
+              <Icon size={22} aria-hidden />
+              {word}
+            </li>
+          );
+        })}
+      </ul>
+    </div>
+  );
+}

@@ -1,0 +1,127 @@
+/** The 3D picture. It draws only when something changes: a phone's battery is not for a picture that stands still. */
+import {
+  DirectionalLight,
+  GridHelper,
+  HemisphereLight,
+  PerspectiveCamera,
+  Quaternion,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Quaternion as Mounting } from "../../lib/rotation";
+import { makeCar, makeDevice, makeDirections, type Palette } from "./car";
+
+export type ViewName = "corner" | "above" | "left" | "behind";
+
+/** Where the camera stands, metres in the vehicle frame. Straight above is taken a little off: there "up" is not unique. */
+const CAMERAS: Record<ViewName, Vector3> = {
+  corner: new Vector3(-4.6, 4.4, 3.6),
+  above: new Vector3(-0.02, 0, 7.6),
+  left: new Vector3(0.35, 7.4, 0.95),
+  behind: new Vector3(-7.4, 0, 1.2),
+};
+const TARGET = new Vector3(0.35, 0, 0.75);
+/** ms */
+const TURN = 500;
+
+export class CarScene {
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera(38, 1, 0.1, 60);
+  private readonly controls: OrbitControls;
+  private readonly device;
+  private readonly watcher: ResizeObserver;
+  private frame = 0;
+
+  /** Throws where the browser has no WebGL. */
+  constructor(
+    private readonly host: HTMLElement,
+    palette: Palette,
+    private readonly still: boolean,
+  ) {
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.device = makeDevice(palette);
+    this.fill(palette);
+    this.camera.up.set(0, 0, 1);
+    this.controls = this.makeControls();
+    host.append(this.renderer.domElement);
+    this.watcher = new ResizeObserver(() => this.resize());
+    this.watcher.observe(host);
+    this.look("corner");
+  }
+
+  private fill(palette: Palette): void {
+    const sun = new DirectionalLight("#ffffff", 1.6);
+    sun.position.set(-3, 4, 8);
+    const grid = new GridHelper(12, 12, palette.edge, palette.edge).rotateX(Math.PI / 2);
+    grid.material.transparent = true;
+    grid.material.opacity = 0.35;
+    const light = new HemisphereLight("#ffffff", "#8899aa", 1.6);
+    this.scene.add(light, sun, grid, makeCar(palette), makeDirections(palette), this.device);
+  }
+
+  private makeControls(): OrbitControls {
+    const controls = new OrbitControls(this.camera, this.renderer.domElement);
+    controls.target.copy(TARGET);
+    controls.enablePan = false;
+    controls.enableZoom = false;
+    controls.maxPolarAngle = Math.PI * 0.52;
+    controls.addEventListener("change", () => this.render());
+    // One finger sideways turns the car, up and down scrolls the page.
+    this.renderer.domElement.style.touchAction = "pan-y";
+    return controls;
+  }
+
+  /** Turn the device to a mounting q_vs, at once or in half a second. */
+  turn([w, x, y, z]: Mounting, animated: boolean): void {
+    cancelAnimationFrame(this.frame);
+    const from = this.device.quaternion.clone();
+    const to = new Quaternion(x, y, z, w);
+    if (!animated || this.still) {
+      this.device.quaternion.copy(to);
+      this.render();
+      return;
+    }
+    const start = performance.now();
+    const step = (now: number) => {
+      const share = Math.min((now - start) / TURN, 1);
+      this.device.quaternion.slerpQuaternions(from, to, share * (2 - share));
+      this.render();
+      if (share < 1) this.frame = requestAnimationFrame(step);
+    };
+    this.frame = requestAnimationFrame(step);
+  }
+
+  look(view: ViewName): void {
+    this.camera.position.copy(CAMERAS[view]);
+    this.controls.update();
+    this.render();
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.frame);
+    this.watcher.disconnect();
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+    this.renderer.domElement.remove();
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.host;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.camera.aspect = clientWidth / clientHeight;
+    // A narrow picture needs a wider angle to hold the whole car.
+    this.camera.fov = this.camera.aspect > 1.5 ? 34 : 42;
+    this.camera.updateProjectionMatrix();
+    this.render();
+  }
+
+  private render(): void {
+    this.renderer.render(this.scene, this.camera);
+  }
+}
