@@ -1,6 +1,5 @@
 """The application: what it is made of, and what runs beside the requests."""
 
-import asyncio
 import logging
 import signal
 import sys
@@ -12,6 +11,7 @@ from datetime import datetime
 from importlib.metadata import version
 from typing import Any, TypedDict
 
+import anyio
 from anyio import to_thread
 from fastapi import FastAPI
 
@@ -74,13 +74,14 @@ async def _lifespan(settings: Settings, clock: Callable[[], datetime]) -> AsyncI
         print(f"First admin key, shown only once: {first_key}", file=sys.stderr, flush=True)
     ready = threading.Event()
     await hub.start()
-    tasks = [asyncio.create_task(work) for work in (_warm_up(context, ready), hub.run(), housekeeping.run(context))]
-    with _ending_with(hub.close):
-        yield State(context=context, hub=hub, ready=ready)
-    hub.close()
-    for task in tasks:
-        task.cancel()
-    await asyncio.gather(*tasks, return_exceptions=True)
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(_warm_up, context, ready)
+        tasks.start_soon(hub.run)
+        tasks.start_soon(housekeeping.run, context)
+        with _ending_with(hub.close):
+            yield State(context=context, hub=hub, ready=ready)
+        hub.close()
+        tasks.cancel_scope.cancel()  # threads at work are waited for
     context.database.close()
 
 

@@ -1,9 +1,11 @@
 """What is done now and then: gaps declared lost, old rows removed. Any number of processes may do it at once."""
 
-import asyncio
 import logging
 from collections.abc import Callable
 from datetime import timedelta
+
+import anyio
+from anyio import to_thread
 
 from api.services import ingest
 from api.services.context import Context
@@ -29,16 +31,15 @@ def tidy(context: Context) -> None:
 
 async def run(context: Context) -> None:
     """Keep house until cancelled."""
-    await asyncio.gather(
-        _every(GAP_INTERVAL, ingest.close_gaps, context),
-        _every(TIDY_INTERVAL, tidy, context),
-    )
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(_every, GAP_INTERVAL, ingest.close_gaps, context)
+        tasks.start_soon(_every, TIDY_INTERVAL, tidy, context)
 
 
 async def _every(seconds: float, work: Callable[[Context], None], context: Context) -> None:
     while True:
         try:
-            await asyncio.to_thread(work, context)
+            await to_thread.run_sync(work, context)
         except Exception:
             log.exception("housekeeping failed; it is tried again in %.0f s", seconds)
-        await asyncio.sleep(seconds)
+        await anyio.sleep(seconds)
