@@ -1,6 +1,7 @@
 """Logs on this machine's disk: found out, opened, and cut into chunks as a device would send them."""
 
 from collections.abc import Iterator
+from enum import StrEnum
 from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
@@ -14,12 +15,20 @@ from api.formats.compression import FILE_LIMITS, decode, sniff_encoding
 from api.formats.delimited import BYTE_ORDER_MARK, Floats, is_numbers, lines
 from api.formats.log import ParsedLog
 
-FORMATS = {
-    "csv": native_csv.MEDIA_TYPE,
-    "thesis": thesis_log.MEDIA_TYPE,
-    "arrow": arrow_stream.MEDIA_TYPE,
+
+class Format(StrEnum):
+    """Short names of the formats, for people."""
+
+    CSV = "csv"
+    THESIS = "thesis"
+    ARROW = "arrow"
+
+
+MEDIA_TYPES = {
+    Format.CSV: native_csv.MEDIA_TYPE,
+    Format.THESIS: thesis_log.MEDIA_TYPE,
+    Format.ARROW: arrow_stream.MEDIA_TYPE,
 }
-"""short names of the formats, for people"""
 
 _ARROW_CONTINUATION = b"\xff\xff\xff\xff"
 
@@ -45,8 +54,8 @@ class Chunk(NamedTuple):
     content: bytes
 
 
-def open_log(path: Path, log_format: str | None = None) -> LogFile:
-    """Read and decompress a file; the format is found out unless given (a key of `FORMATS`).
+def open_log(path: Path, log_format: Format | None = None) -> LogFile:
+    """Read and decompress a file; the format is found out unless given.
 
     Raises
     ------
@@ -57,7 +66,7 @@ def open_log(path: Path, log_format: str | None = None) -> LogFile:
     """
     body = path.read_bytes()
     content = decode(body, sniff_encoding(body), FILE_LIMITS)
-    return LogFile(content, FORMATS[log_format] if log_format else sniff_media_type(content))
+    return LogFile(content, MEDIA_TYPES[log_format] if log_format else sniff_media_type(content))
 
 
 def sniff_media_type(content: bytes) -> str:

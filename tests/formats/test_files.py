@@ -9,7 +9,7 @@ import pytest
 import zstandard
 
 from api.formats import FormatError, parse
-from api.formats.files import FORMATS, LogFile, chunks, open_log, sniff_media_type
+from api.formats.files import MEDIA_TYPES, Format, LogFile, chunks, open_log, sniff_media_type
 from api.formats.writer import write_native_csv
 from core import Samples
 from core.simulation import Scenario, simulate
@@ -55,14 +55,14 @@ def test_columns_nobody_filled_are_left_out(drive: Samples) -> None:
 
 
 @pytest.mark.parametrize("compress", [bytes, gzip.compress, zstandard.compress])
-@pytest.mark.parametrize("name", sorted(FORMATS))
-def test_a_file_is_found_out(tmp_path: Path, drive: Samples, name: str, compress: type[bytes]) -> None:
+@pytest.mark.parametrize("name", list(Format))
+def test_a_file_is_found_out(tmp_path: Path, drive: Samples, name: Format, compress: type[bytes]) -> None:
     csv = write_native_csv(drive)
     content = {"csv": csv, "thesis": THESIS, "arrow": arrow(csv)}[name]
     path = tmp_path / "log"
     path.write_bytes(compress(content))
     log = open_log(path)
-    assert log == (content, FORMATS[name])
+    assert log == (content, MEDIA_TYPES[name])
     assert log == open_log(path, name)
     assert log.parse().rows == (3 if name == "thesis" else len(drive))
 
@@ -71,7 +71,7 @@ def test_a_format_can_be_forced(tmp_path: Path) -> None:
     path = tmp_path / "log"
     path.write_bytes(THESIS)
     with pytest.raises(FormatError, match="found numbers"):
-        open_log(path, "csv").parse()
+        open_log(path, Format.CSV).parse()
 
 
 def test_rubbish_is_taken_for_csv_and_refused_as_such(tmp_path: Path) -> None:
@@ -81,10 +81,10 @@ def test_rubbish_is_taken_for_csv_and_refused_as_such(tmp_path: Path) -> None:
         open_log(path).parse()
 
 
-@pytest.mark.parametrize("name", ["csv", "arrow"])
-def test_chunks_put_together_are_the_log(drive: Samples, name: str) -> None:
+@pytest.mark.parametrize("name", [Format.CSV, Format.ARROW])
+def test_chunks_put_together_are_the_log(drive: Samples, name: Format) -> None:
     csv = b"\xef\xbb\xbf" + write_native_csv(drive).replace(b"\n", b"\r\n\r\n")
-    log = LogFile(arrow(write_native_csv(drive)) if name == "arrow" else csv, FORMATS[name])
+    log = LogFile(arrow(write_native_csv(drive)) if name == "arrow" else csv, MEDIA_TYPES[name])
     whole = log.parse().samples().samples
     pieces = list(chunks(log, whole.t, 6.0))
     assert [piece.t for piece in pieces] == [0.0, 6.0, 12.0, 18.0]
@@ -102,27 +102,27 @@ def test_chunks_put_together_are_the_log(drive: Samples, name: str) -> None:
 
 
 def test_a_gap_makes_no_empty_chunk() -> None:
-    log = LogFile(THESIS, FORMATS["thesis"])
+    log = LogFile(THESIS, MEDIA_TYPES[Format.THESIS])
     pieces = list(chunks(log, log.parse().samples().samples.t, 0.5))
     assert [(piece.t, piece.until) for piece in pieces] == [(0.0, 0.005), (2.005, 2.005)]
     assert b"".join(piece.content for piece in pieces) == THESIS
 
 
 def test_a_clock_that_jumps_years_ahead_is_no_trouble() -> None:
-    log = LogFile(THESIS.replace(b"2005", b"1900000000000"), FORMATS["thesis"])
+    log = LogFile(THESIS.replace(b"2005", b"1900000000000"), MEDIA_TYPES[Format.THESIS])
     assert len(list(chunks(log, log.parse().samples().samples.t, 0.001))) == 3
 
 
 @pytest.mark.parametrize(
     ("content", "name"),
     [
-        (b"", "csv"),
-        (b"t,ax\n", "csv"),
-        (b"\n\n 1;2;3\n", "thesis"),
-        (b"\xef\xbb\xbf1\t2", "thesis"),
-        (b"-1e5,2\n", "thesis"),
-        (b"e\n", "csv"),
+        (b"", Format.CSV),
+        (b"t,ax\n", Format.CSV),
+        (b"\n\n 1;2;3\n", Format.THESIS),
+        (b"\xef\xbb\xbf1\t2", Format.THESIS),
+        (b"-1e5,2\n", Format.THESIS),
+        (b"e\n", Format.CSV),
     ],
 )
-def test_sniffing(content: bytes, name: str) -> None:
-    assert sniff_media_type(content) == FORMATS[name]
+def test_sniffing(content: bytes, name: Format) -> None:
+    assert sniff_media_type(content) == MEDIA_TYPES[name]

@@ -1,0 +1,123 @@
+"""The command `livella`: its words. The work is in `api.commands`, which each command loads when it is called."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+app = typer.Typer(
+    name="livella",
+    help="Automatic mounting-angle calibration for vehicle black boxes.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+LogFormat = Annotated[
+    Literal["csv", "thesis", "arrow"] | None,
+    typer.Option("--format", help="Format of the log; found out if not given."),
+]
+Course = Annotated[
+    Literal["clockwise", "anticlockwise", "auto"], typer.Option(help="Sense of the course in a thesis log.")
+]
+
+
+@app.command()
+def serve(
+    host: Annotated[str | None, typer.Option(help="Address to listen on. [default: 127.0.0.1]")] = None,
+    port: Annotated[int | None, typer.Option(help="TCP port. [default: 8000]")] = None,
+    workers: Annotated[int | None, typer.Option(help="Server processes. [default: 1]")] = None,
+    database_url: Annotated[
+        str | None,
+        typer.Option(help="postgresql://... or sqlite:///... [default: a SQLite file in the data directory]"),
+    ] = None,
+    data_dir: Annotated[Path | None, typer.Option(help="Directory for the data. [default: data]")] = None,
+) -> None:
+    """Migrate the database, then run the service and the page. Settings not given come from the environment."""
+    from api.commands import serve as command
+
+    command.run({"host": host, "port": port, "workers": workers, "database_url": database_url, "data_dir": data_dir})
+
+
+@app.command()
+def replay(
+    logs: Annotated[list[Path], typer.Argument(help="Log files, each of a device of its own.", show_default=False)],
+    log_format: LogFormat = None,
+    preset: Annotated[Literal["default", "thesis"], typer.Option(help="Parameters of the estimator.")] = "default",
+    every: Annotated[float, typer.Option(min=0.01, help="Seconds of log time between estimates with --json.")] = 1.0,
+    course: Course = "auto",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object on each line.")] = False,
+) -> None:
+    """Run the estimator over log files: native CSV, Arrow or thesis logs, plain or compressed with gzip or zstd.
+
+    Exit status 2 when a file could not be read; the others are processed all the same.
+    """
+    from api.commands import replay as command
+    from api.formats import Sense
+    from api.formats.files import Format
+
+    command.run(logs, log_format and Format(log_format), preset, every, Sense(course), as_json)
+
+
+@app.command()
+def simulate(
+    out: Annotated[Path, typer.Argument(help="Log to write, .csv or .csv.gz.", show_default=False)],
+    route: Annotated[
+        str, typer.Option(help="Kind of drive: city, hills, straight, motorway, parked or roundabout.")
+    ] = "city",
+    seconds: Annotated[float, typer.Option(min=1.0, max=86400.0, help="Length of the drive.")] = 600.0,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same drive.")] = 0,
+    mount: Annotated[
+        str | None, typer.Option(metavar="YAW,PITCH,ROLL", help="Mounting, degrees; if not given, any, from the seed.")
+    ] = None,
+    sensor: Annotated[str, typer.Option(help="Quality of the sensors: tmd2, mems or calibrated.")] = "mems",
+    remount_at: Annotated[
+        str | None,
+        typer.Option(metavar="S,YAW,PITCH,ROLL", help="Turn the device to another mounting after S seconds."),
+    ] = None,
+) -> None:
+    """Write a simulated drive, and what is true of it to OUT.truth.json."""
+    from api.commands import simulate as command
+
+    command.run(out, route, seconds, seed, mount, sensor, remount_at)
+
+
+@app.command()
+def upload(
+    log: Annotated[Path, typer.Argument(help="Log file.", show_default=False)],
+    server: Annotated[str, typer.Option(help="Address of the service, http://...", show_default=False)],
+    device: Annotated[str, typer.Option(help="Identity of the device.", show_default=False)],
+    key: Annotated[
+        str, typer.Option(envvar="LIVELLA_KEY", help="Key of the device.", show_default=False, show_envvar=True)
+    ],
+    log_format: LogFormat = None,
+    course: Course = "auto",
+    chunk_seconds: Annotated[float, typer.Option(min=0.1, help="Seconds of log time in a chunk.")] = 60.0,
+    realtime: Annotated[
+        float | None, typer.Option(min=0.001, help="Send at this many times the speed of time; if not given, at once.")
+    ] = None,
+    session: Annotated[
+        str | None, typer.Option(help="Name of the session; if not given, made from the log, so that a repeat resumes.")
+    ] = None,
+    register: Annotated[
+        bool, typer.Option("--register", help="Register the device if it is not there; needs an installer's key.")
+    ] = False,
+) -> None:
+    """Play a device: send a log in chunks, trying again when the service is away.
+
+    Exit status 1 when the service refuses or stays away, 2 when the log cannot be read.
+    """
+    from api.commands import upload as command
+    from api.formats.files import Format
+
+    chosen = log_format and Format(log_format)
+    command.run(log, server, device, key, chosen, course, chunk_seconds, realtime, session, register)
+
+
+def main() -> None:
+    """Run the command."""
+    app()
+
+
+if __name__ == "__main__":
+    main()

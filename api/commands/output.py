@@ -1,0 +1,58 @@
+"""What commands write to the terminal: errors and progress to stderr, results to stdout."""
+
+from collections.abc import Iterable
+from typing import NoReturn
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+import core
+
+FAILED = 1
+"""exit status when the service refused or could not be reached"""
+UNREADABLE = 2
+"""exit status when a file or an argument cannot be used"""
+
+PIPE_WIDTH = 160
+"""columns of a table that goes into a file or another program"""
+
+
+def fail(message: str, status: int = FAILED) -> NoReturn:
+    """End the command with a message."""
+    complain(message)
+    raise typer.Exit(status)
+
+
+def complain(message: str) -> None:
+    """Say on stderr what is wrong."""
+    typer.echo(message, err=True)
+
+
+def stdout() -> Console:
+    """Give the console for results."""
+    console = Console()
+    return console if console.is_terminal else Console(width=PIPE_WIDTH)
+
+
+def progress() -> Progress:
+    """Give a progress bar on stderr, shown on a terminal only; its total is in seconds of log time."""
+    console = Console(stderr=True)
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:.0f}/{task.total:.0f} s"),
+        TimeRemainingColumn(),
+        console=console,
+        disable=not console.is_terminal,
+        transient=True,
+    )
+
+
+def angles(quaternion: Iterable[float], sigma_deg: Iterable[float]) -> str:
+    """Give a mounting for people, such as "roll 1.2 +- 0.3, pitch ... deg"."""
+    degrees = np.degrees(core.quaternion.angles(list(quaternion)))
+    names = ("roll", "pitch", "yaw")
+    parts = [f"{name} {a:.1f} ± {s:.1f}" for name, a, s in zip(names, degrees, sigma_deg, strict=True)]
+    return ", ".join(parts) + " deg"

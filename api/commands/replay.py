@@ -1,0 +1,200 @@
+"""`livella replay`: run the estimator over log files."""
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import replace as with_changes
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import typer
+from rich.table import Table
+
+import core
+from api.commands import output
+from api.formats import FormatError, Sense
+from api.formats.files import Format, open_log
+from api.services import presenting
+from core import PRESETS, Event, Outcome, Parameters, Samples, Status
+
+PIECE = 60.0
+"""s of log time given to the estimator at once"""
+
+
+class Result(NamedTuple):
+    """What came of one file."""
+
+    file: Path
+    duration: float
+    """s"""
+    samples: int
+    fixes: int
+    rejected: Counter[str]
+    status: Status
+
+
+def run(logs: list[Path], log_format: Format | None, preset: str, every: float, course: Sense, as_json: bool) -> None:
+    """Run the estimator over each file, which is a device of its own.
+
+    Parameters
+    ----------
+    logs
+        files in any format, plain or compressed
+    log_format
+        None = found out for each file
+    preset
+        a key of `core.PRESETS`
+    every
+        s of log time between the estimates that are printed
+    course
+        sense of the course in thesis logs
+    as_json
+        print lines of JSON instead of a table
+    """
+    params = with_changes(PRESETS[preset], report_interval=every)
+    results: list[Result] = []
+    for path in logs:
+        try:
+            samples = _read(path, log_format, course)
+        except (FormatError, OSError) as error:
+            _explain(path, error)
+            continue
+        results.append(_replay(path, samples, params, _print_json if as_json else _print_nothing))
+        if as_json:
+            typer.echo(json.dumps(_summary(results[-1]), allow_nan=False))
+    if results and not as_json:
+        output.stdout().print(_table(results))
+    if len(results) < len(logs):
+        raise typer.Exit(output.UNREADABLE)
+
+
+def _read(path: Path, log_format: Format | None, course: Sense) -> Samples:
+    log = open_log(path, log_format).parse(course)
+    for notice in log.notices:
+        output.complain(f"{path}: {notice}")
+    return log.samples().samples
+
+
+def _explain(path: Path, error: FormatError | OSError) -> None:
+    """Say which file cannot be read, where, and what was expected."""
+    if isinstance(error, OSError):
+        output.complain(f"{path}: {error.strerror or error}")
+    else:
+        for sentence in [str(problem) for problem in error.problems] or [error.detail]:
+            output.complain(f"{path}: {sentence}")
+
+
+def _replay(path: Path, samples: Samples, params: Parameters, show: Callable[[Outcome], None]) -> Result:
+    """Run the estimator over one log in pieces, a progress bar on the terminal."""
+    state = core.begin_session(params, core.initial_state(params))
+    status, used, fixes, rejected = core.status(params, state), 0, 0, Counter[str]()
+    duration = float(samples.t[-1] - samples.t[0])
+    with output.progress() as bar:
+        task = bar.add_task(path.name, total=duration)
+        for piece in _pieces(samples):
+            state, outcome = core.advance(params, state, piece)
+            show(outcome)
+            status, used, fixes = outcome.status, used + outcome.samples, fixes + outcome.fixes
+            rejected.update(outcome.rejected)
+            bar.update(task, completed=float(piece.t[-1] - samples.t[0]))
+    return Result(path, duration, used, fixes, rejected, status)
+
+
+def _pieces(samples: Samples) -> Iterator[Samples]:
+    starts = np.flatnonzero(np.diff(np.floor((samples.t - samples.t[0]) / PIECE), prepend=-1.0))
+    for start, stop in zip(starts.tolist(), [*starts[1:].tolist(), len(samples)], strict=True):
+        yield samples.slice(start, stop)
+
+
+def _print_nothing(_: Outcome) -> None:
+    """Keep the terminal for the table."""
+
+
+def _print_json(outcome: Outcome) -> None:
+    """Print estimates and events in the order of their times."""
+    lines = sorted([*_estimates(outcome), *map(_event, outcome.events)], key=lambda line: float(line["t"]))
+    for line in lines:
+        typer.echo(json.dumps(line, allow_nan=False))
+
+
+def _estimates(outcome: Outcome) -> Iterator[dict[str, Any]]:
+    rows = outcome.estimates
+    for k in range(rows.t.size):
+        yield {
+            "type": "estimate",
+            "t": float(rows.t[k]),
+            "stage": core.Stage(int(rows.stage[k])).word,
+            "quaternion": rows.quaternion[k].tolist(),
+            "sigma_deg": presenting.degrees(rows.sigma[k]),
+            "stable": bool(rows.stable[k]),
+            "reliable": bool(rows.reliable[k]),
+            "progress": float(rows.progress[k]),
+            "needs": list(core.Needs(int(rows.needs[k])).words),
+        }
+
+
+def _event(event: Event) -> dict[str, Any]:
+    line: dict[str, Any] = {"type": "event", "t": event.t, "event": str(event.kind)}
+    if event.quaternion is not None:
+        line["quaternion"] = event.quaternion.tolist()
+    if event.sigma is not None:
+        line["sigma_deg"] = presenting.degrees(event.sigma)
+    if event.angle is not None:
+        line["angle_deg"] = float(np.degrees(event.angle))
+    if event.verification is not None:
+        line["verification"] = presenting.verification(event.verification)
+    if event.reason is not None:
+        line["reason"] = event.reason
+    return line
+
+
+def _summary(result: Result) -> dict[str, Any]:
+    status = result.status
+    return {
+        "type": "summary",
+        "file": str(result.file),
+        "duration_s": result.duration,
+        "samples": result.samples,
+        "fixes": result.fixes,
+        "rejected": dict(result.rejected),
+        "stage": status.stage.word,
+        "mount": status.mount and _mount(status.mount),
+        "estimate": status.estimate and _with_angles(presenting.estimate(status.estimate)),
+    }
+
+
+def _mount(mount: core.Mount) -> dict[str, Any]:
+    known = {"quaternion": mount.quaternion.tolist(), "sigma_deg": presenting.degrees(mount.sigma)}
+    status = "suspect" if mount.suspect else "in_force"
+    test = presenting.verification(mount.verification)
+    return {"t": mount.t, **_with_angles(known), "status": status, "verification": test}
+
+
+def _with_angles(document: dict[str, Any]) -> dict[str, Any]:
+    return document | presenting.rotation(document["quaternion"])
+
+
+def _table(results: list[Result]) -> Table:
+    table = Table("file", "minutes", "samples", "fixes", "rejected", "stage", "mounting, or estimate in brackets")
+    for result in results:
+        table.add_row(
+            str(result.file),
+            f"{result.duration / 60:.1f}",
+            str(result.samples),
+            str(result.fixes),
+            ", ".join(f"{reason} {count}" for reason, count in result.rejected.items()),
+            result.status.stage.word,
+            _found(result.status),
+        )
+    return table
+
+
+def _found(status: Status) -> str:
+    known = status.mount or status.estimate
+    if known is None:
+        return "none yet; needs " + ", ".join(status.needs.words)
+    text = output.angles(known.quaternion, presenting.degrees(known.sigma))
+    if status.mount is None:
+        return f"({text})"
+    return f"{text}, suspect" if status.mount.suspect else text
