@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from core import quaternion
 from core.samples import Samples
-from core.simulation_motion import MARGIN, Motion, Trajectory, drive, turn_back
-from core.simulation_routes import plan_route
+from core.simulation_motion import MARGIN, Motion, Trajectory, turn_back
+from core.simulation_routes import ROUTES, plan_route
 from core.simulation_sensors import (
     SENSORS,
     Receiver,
@@ -64,6 +64,8 @@ class Scenario:
     """(start, end) s without a fix"""
     reverse: bool = False
     """back out of a parking space first, and reverse again every few minutes"""
+    relief: float = 1.0
+    """1 = the usual grades and banks of the route, 0 = a flat road"""
     vibration: float = 1.0
     """1 = an ordinary car, 0 = a perfectly smooth ride"""
     jitter: float = 0.0
@@ -139,7 +141,8 @@ def simulate(scenario: Scenario) -> Drive:
     chosen, routing, riding, sensing, receiving = rngs
     truth_of = _choose(scenario, chosen)
     plan = plan_route(scenario.route, scenario.seconds + MARGIN, scenario.reverse, routing)
-    trajectory = drive(scenario.route, plan, scenario.seconds, scenario.vibration, riding)
+    road = ROUTES[scenario.route].road.scaled(scenario.relief, scenario.vibration)
+    trajectory = Trajectory.of(plan, road, scenario.seconds, riding)
     t = _sampling_times(scenario, sensing)
     f_s, w_s = _readings(scenario, truth_of, trajectory, t, riding, sensing)
     rows, reported = _fix_rows(scenario, t)
@@ -219,7 +222,7 @@ def _readings(
     """Accelerometer and gyroscope in sensor axes."""
     motion = trajectory.at(t)
     f_v, w_v = motion.specific_force(chosen.lever_arm), motion.w_v
-    shaking, rattling = vibration(t, motion.speed, riding)
+    shaking, rattling = vibration(t, motion.speed, ROUTES[scenario.route].road.roughness, riding)
     f_v, w_v = f_v + scenario.vibration * shaking, w_v + scenario.vibration * rattling
     q_vs, turning = _mounting(chosen, t)
     r_vs = quaternion.matrix(q_vs)

@@ -14,7 +14,7 @@ from scipy.interpolate import BSpline, CubicSpline, make_interp_spline
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import butter, sosfilt
 
-from core.simulation_routes import ROUTES, Itinerary, Road, sample_route
+from core.simulation_routes import Itinerary, Road, sample_route
 
 Floats = NDArray[np.float64]
 
@@ -104,8 +104,8 @@ class Trajectory(NamedTuple):
     """m east, north, up of the turning point"""
 
     @classmethod
-    def of(cls, plan: Itinerary, road: Road, seconds: float, vibration: float, rng: np.random.Generator) -> Self:
-        """Drive the planned route on a road, with `vibration` 1 for a usual car and 0 for a perfectly smooth ride."""
+    def of(cls, plan: Itinerary, road: Road, seconds: float, rng: np.random.Generator) -> Self:
+        """Drive the planned route on a road."""
         t = np.arange(-MARGIN, seconds + MARGIN, STEP)
         speed, curvature = _driven(plan, t, rng)
         along = np.cumsum(speed) * STEP
@@ -113,7 +113,7 @@ class Trajectory(NamedTuple):
         heading += radians(0.4) * _over_distance(along, 40.0, rng)
         grade, bank = _road(along, road, rng)
         ahead, sideways = np.gradient(speed, STEP), speed * np.gradient(heading, STEP)
-        bounce = vibration * road.roughness * np.sqrt(np.abs(speed) / 15.0) * _body_modes(t.size, rng)
+        bounce = road.roughness * np.sqrt(np.abs(speed) / 15.0) * _body_modes(t.size, rng)
         pitch = _suspension(-PITCH_PER_ACCELERATION * ahead) - grade + radians(0.15) * bounce[0]
         roll = _suspension(ROLL_PER_ACCELERATION * sideways) + bank + radians(0.2) * bounce[1]
         yaw = heading + REAR_SLIP_PER_ACCELERATION * sideways
@@ -129,11 +129,6 @@ class Trajectory(NamedTuple):
         v_n[:, 2] += heave
         w_v, dw_v = _body_rates(pitch, roll, rate[:, 4:].T, second[:, 4:].T)
         return Motion(yaw, pitch, roll, v_n, _path_acceleration(value.T, rate.T), w_v, dw_v, speed)
-
-
-def drive(route: str, plan: Itinerary, seconds: float, vibration: float, rng: np.random.Generator) -> Trajectory:
-    """Drive a planned route on its kind of road."""
-    return Trajectory.of(plan, ROUTES[route].road, seconds, vibration, rng)
 
 
 def _driven(plan: Itinerary, t: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:

@@ -165,6 +165,10 @@ class Road(NamedTuple):
     roughness: float = 1.0
     """vibration relative to an ordinary town road"""
 
+    def scaled(self, relief: float, vibration: float) -> "Road":
+        """Give the road with other slopes and another roughness."""
+        return Road(relief * self.grade_rms, self.grade_limit, relief * self.bank_rms, vibration * self.roughness)
+
 
 @dataclass(frozen=True)
 class Route:

@@ -69,11 +69,11 @@ class SensorErrors(NamedTuple):
         return cls(sensor.bias * bias, sensor.scale * scale, sensor.gyro_bias * gyro_bias)
 
 
-def vibration(t: Floats, speed: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
+def vibration(t: Floats, speed: Floats, roughness: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """(N, 3) m/s2 and (N, 3) rad/s of vibration at the times `t`, growing with the square root of the speed."""
     size = int((t[-1] - t[0]) * VIBRATION_RATE) + 2
     grid = t[0] + np.arange(size) / VIBRATION_RATE
-    growth = np.sqrt(np.abs(speed) / 15.0)
+    growth = roughness * np.sqrt(np.abs(speed) / 15.0)
     signals = []
     for axis in (0, 1, 2, 0, 1, 2):
         idle, running = band_noise(rng, size, IDLE[0], VIBRATION_RATE), np.zeros(size)

@@ -362,6 +362,14 @@ def test_the_roundabout_comes_after_a_straight() -> None:
     assert np.max(np.abs(w_z)) > 0.3
 
 
+def test_without_relief_the_road_is_flat() -> None:
+    drive = simulate(replace(EXACT, route="hills", relief=0.0))
+    np.testing.assert_allclose(drive.truth.v_n[:, 2], 0, atol=1e-9)
+    steady = np.abs(np.gradient(drive.truth.speed, drive.truth.t)) < 0.05
+    pitch = np.array([quaternion.angles(q)[1] for q in drive.truth.q_nv])
+    assert np.degrees(np.max(np.abs(pitch[steady]))) < 0.6
+
+
 def test_vibration_grows_with_speed() -> None:
     drive = simulate(Scenario(route="straight", seconds=300, sensor="calibrated"))
     f_z = in_vehicle(drive, drive.samples.f_s)[:, 2]
