@@ -114,6 +114,14 @@ def upload(
     command.run(log, server, device, key, chosen, course, chunk_seconds, realtime, session, register)
 
 
+@app.command()
+def demo(port: Annotated[int, typer.Option(min=1, max=65535, help="TCP port.")] = 8000) -> None:
+    """Run the service with a simulated fleet in various states, for a first look. Nothing is kept."""
+    from api.commands import demo as command
+
+    command.run(port)
+
+
 def main() -> None:
     """Run the command."""
     app()

@@ -1,6 +1,7 @@
 """A device as the service sees it: sends chunks one after the other, and tries again as long as that can help."""
 
 import gzip
+import threading
 from collections.abc import Callable
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
@@ -8,7 +9,16 @@ from typing import Any, Self
 from urllib.parse import quote
 
 import httpx
-from tenacity import RetryCallState, Retrying, retry_if_exception_type, stop_after_delay, wait_random_exponential
+from tenacity import (
+    RetryCallState,
+    Retrying,
+    retry_if_exception_type,
+    sleep_using_event,
+    stop_after_delay,
+    stop_any,
+    stop_when_event_set,
+    wait_random_exponential,
+)
 
 PATIENCE = 300.0
 """s one request is tried again before the device gives up"""
@@ -38,8 +48,15 @@ class UnavailableError(Exception):
 class Service:
     """The service at an address, asked with a key. A context manager."""
 
-    def __init__(self, server: str, key: str, say: Callable[[str], None], patience: float = PATIENCE) -> None:
-        """Prepare to talk to `server`; `say` is told when a request has to be tried again."""
+    def __init__(
+        self,
+        server: str,
+        key: str,
+        say: Callable[[str], None],
+        patience: float = PATIENCE,
+        end: threading.Event | None = None,
+    ) -> None:
+        """Prepare to talk to `server`; `say` is told when a request is tried again, which `end` cuts short."""
         self._http = httpx.Client(
             base_url=f"{server.rstrip('/')}/api/v1/",
             headers={"Authorization": f"Bearer {key}"},
@@ -47,7 +64,8 @@ class Service:
             follow_redirects=False,
         )
         self._say = say
-        self._patience = patience
+        self._end = end or threading.Event()
+        self._stop = stop_any(stop_after_delay(patience), stop_when_event_set(self._end))
 
     def __enter__(self) -> Self:
         """Keep the connections open."""
@@ -70,7 +88,8 @@ class Service:
         retrying = Retrying(
             retry=retry_if_exception_type(UnavailableError),
             wait=_wait,
-            stop=stop_after_delay(self._patience),
+            stop=self._stop,
+            sleep=sleep_using_event(self._end),
             before_sleep=self._announce,
             reraise=True,
         )

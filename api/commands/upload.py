@@ -46,6 +46,8 @@ def run(
     try:
         with Service(server, key, output.complain) as service:
             device_key = register(service, device_id, device_id) if new else None
+            if device_key:
+                _print(f"registered {device_id}; its key, shown only once: {device_key}")
         with Service(server, device_key or key, output.complain) as service:
             device = Device(service, device_id, name, log.media_type, course)
             answer, duplicates = _send(device, log, samples, chunk_seconds, realtime)
@@ -53,8 +55,6 @@ def run(
         output.fail(f"{path}: {error}")
     except (httpx.InvalidURL, httpx.UnsupportedProtocol) as error:
         output.fail(f"{server}: {error}", output.UNREADABLE)
-    if device_key:
-        output.stdout().print(f"registered {device_id}; its key, shown only once: {device_key}", soft_wrap=True)
     _report(answer, duplicates)
 
 
@@ -102,4 +102,8 @@ def _report(answer: dict[str, Any], duplicates: int) -> None:
         if known:
             lines.append(f"{title}: {output.angles(known['quaternion'], known['sigma_deg'])}")
     for line in lines:
-        output.stdout().print(line, soft_wrap=True, highlight=False)
+        _print(line)
+
+
+def _print(line: str) -> None:
+    output.stdout().print(line, soft_wrap=True, highlight=False, markup=False)
