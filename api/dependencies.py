@@ -1,5 +1,6 @@
 """What routes ask for: the context, who is calling, the body."""
 
+import re
 from typing import Annotated
 from urllib.parse import urlsplit
 
@@ -7,10 +8,12 @@ from fastapi import Depends, Query, Request, Security
 from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
 
 from api.live import Hub
+from api.schemas import DEVICE_ID
 from api.services import access, paging
 from api.services.access import Principal, Role
 from api.services.context import Context
-from api.services.errors import ForbiddenError, StartingError, TooLargeError, UnauthenticatedError
+from api.services.errors import ForbiddenError, NotFoundError, StartingError, TooLargeError, UnauthenticatedError
+from api.services.fleet import UNKNOWN_DEVICE
 
 COOKIE = "livella_session"
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -82,10 +85,20 @@ class Requires:
         return principal
 
 
+def known_id(device_id: str) -> str:
+    """Give the device of the path, if it can be one at all."""
+    if not re.fullmatch(DEVICE_ID, device_id):
+        raise NotFoundError(UNKNOWN_DEVICE)
+    return device_id
+
+
 def own_device(device_id: str, principal: Caller) -> str:
     """Give the device of the path, if the caller may see it: whether it exists is looked up only then."""
     access.require_device(principal, device_id)
-    return device_id
+    return known_id(device_id)
+
+
+KnownId = Annotated[str, Depends(known_id)]
 
 
 AnyDevice = Annotated[str, Depends(own_device)]

@@ -28,10 +28,14 @@ Vector3 = tuple[float, float, float]
 Vector4 = tuple[float, float, float, float]
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 
-DeviceId = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9._:-]{0,63}$", max_length=64)]
+DEVICE_ID = r"^[A-Za-z0-9][A-Za-z0-9._:-]{0,63}$"
+NO_NUL = r"^[^\x00]*$"
+"""PostgreSQL keeps no text with the character 0."""
+DeviceId = Annotated[str, StringConstraints(pattern=DEVICE_ID, max_length=64)]
 SessionName = Annotated[str, StringConstraints(pattern=r"^[\x21-\x7e]{1,128}$", max_length=128)]
-Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=128)]
-Notes = Annotated[str, StringConstraints(max_length=4000)]
+Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=128, pattern=NO_NUL)]
+Notes = Annotated[str, StringConstraints(max_length=4000, pattern=NO_NUL)]
+Words = Annotated[str, StringConstraints(max_length=128, pattern=NO_NUL)]
 
 T = TypeVar("T")
 

@@ -23,7 +23,7 @@ def list_alerts(
     state: schemas.AlertState | None = None,
     kind: schemas.AlertKind | None = None,
     severity: schemas.Severity | None = None,
-    device_id: Annotated[str | None, Query(max_length=64)] = None,
+    device_id: schemas.Words | None = None,
     since: Annotated[AwareDatetime | None, Query(description="Opened at or after.")] = None,
     until: Annotated[AwareDatetime | None, Query(description="Opened before.")] = None,
     limit: Limit = 100,

@@ -2,17 +2,15 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query
+from fastapi import APIRouter, Depends, Query
 
 from api import schemas
-from api.dependencies import AfterText, CurrentContext, Limit, Requires
+from api.dependencies import AfterText, CurrentContext, KnownId, Limit, Requires
 from api.services import fleet, paging, presenting
 from api.services.access import Role
 from storage import devices
 
 router = APIRouter(prefix="/devices", tags=["devices"], dependencies=[Depends(Requires(Role.INSTALLER))])
-
-DevicePath = Annotated[str, Path(max_length=64)]
 
 
 @router.post("", status_code=201)
@@ -25,7 +23,7 @@ def register_device(draft: schemas.DeviceDraft, context: CurrentContext) -> sche
 def list_devices(
     context: CurrentContext,
     after: AfterText,
-    q: Annotated[str | None, Query(max_length=128, description="Found in id, name, vehicle or notes.")] = None,
+    q: Annotated[schemas.Words | None, Query(description="Found in id, name, vehicle or notes.")] = None,
     stage: schemas.StageName | None = None,
     has_open_alert: bool | None = None,
     limit: Limit = 100,
@@ -37,18 +35,18 @@ def list_devices(
 
 
 @router.get("/{device_id}")
-def read_device(device_id: DevicePath, context: CurrentContext) -> schemas.Device:
+def read_device(device_id: KnownId, context: CurrentContext) -> schemas.Device:
     """Read a device."""
     return fleet.find(context, device_id)
 
 
 @router.patch("/{device_id}")
-def edit_device(device_id: DevicePath, patch: schemas.DevicePatch, context: CurrentContext) -> schemas.Device:
+def edit_device(device_id: KnownId, patch: schemas.DevicePatch, context: CurrentContext) -> schemas.Device:
     """Change name, vehicle or notes; what is left out stays, null clears vehicle or notes."""
     return fleet.edit(context, device_id, patch.model_dump(exclude_unset=True))
 
 
 @router.delete("/{device_id}", status_code=204)
-def remove_device(device_id: DevicePath, context: CurrentContext) -> None:
+def remove_device(device_id: KnownId, context: CurrentContext) -> None:
     """Remove a device with its key, its history and its alerts."""
     fleet.remove(context, device_id)

@@ -1,12 +1,14 @@
 """Keyset pages: a cursor names the last item given, so that items which come or go do not shift the next page."""
 
 import binascii
-from base64 import urlsafe_b64decode, urlsafe_b64encode
+from base64 import b64decode, urlsafe_b64encode
 from collections.abc import Callable
 from typing import TypeVar
 
 from api import schemas
 from api.services.errors import CursorError
+
+INVALID = "Give the cursor exactly as `next_cursor` of the page before."
 
 R = TypeVar("R")
 S = TypeVar("S")
@@ -20,16 +22,19 @@ def encode(key: str | int) -> str:
 def decode(cursor: str) -> str:
     """Give what `encode` was given."""
     try:
-        return urlsafe_b64decode(cursor.encode() + b"=" * (-len(cursor) % 4)).decode()
-    except (binascii.Error, UnicodeError) as error:
-        raise CursorError("Give the cursor exactly as `next_cursor` of the page before.") from error
+        text = b64decode(cursor + "=" * (-len(cursor) % 4), altchars="-_", validate=True).decode()
+    except (binascii.Error, ValueError) as error:
+        raise CursorError(INVALID) from error
+    if not text.isprintable():
+        raise CursorError(INVALID)
+    return text
 
 
 def decode_number(cursor: str) -> int:
     """Give the number that `encode` was given."""
     text = decode(cursor)
     if not (text.isascii() and text.isdigit() and len(text) < 19):
-        raise CursorError("Give the cursor exactly as `next_cursor` of the page before.")
+        raise CursorError(INVALID)
     return int(text)
 
 

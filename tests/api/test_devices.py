@@ -1,0 +1,148 @@
+import pytest
+import sqlalchemy as sa
+
+from storage.database import Database
+from storage.models import metadata
+from tests.conftest import Clock
+from tests.drives import chunks
+from tests.service import Api
+
+
+def ids(page: dict[str, list[dict[str, str]]]) -> list[str]:
+    return [item["id"] for item in page["items"]]
+
+
+def test_registering_shows_the_device_and_its_key_once(api: Api, clock: Clock) -> None:
+    made = api.post("/devices", {"id": "Box:7_a.b-c", "name": " Truck 7 ", "vehicle": "MAN", "notes": "left"}, 201)
+    assert made["device"] == {
+        "id": "Box:7_a.b-c",
+        "name": "Truck 7",
+        "vehicle": "MAN",
+        "notes": "left",
+        "created_at": "2024-05-06T07:08:09Z",
+        "stage": "waiting",
+        "progress": 0.0,
+        "mount_status": None,
+        "open_alerts": 0,
+        "last_data_at": None,
+        "revision": 0,
+    }
+    assert api.get("/devices/Box:7_a.b-c") == made["device"]
+    assert "key" not in api.get("/devices/Box:7_a.b-c")
+    assert Api(api.client, made["key"]).get("/session")["device_id"] == "Box:7_a.b-c"
+
+
+def test_an_id_is_made_when_none_is_given(api: Api) -> None:
+    first, second = (api.post("/devices", {"name": "x"}, 201)["device"]["id"] for _ in range(2))
+    assert first != second
+
+
+def test_an_id_is_taken_only_once(api: Api) -> None:
+    device = api.add_device("same")
+    problem = api.post("/devices", {"id": "same", "name": "other"}, 409)
+    assert problem["type"].endswith("conflict")
+    assert api.get("/devices/same")["name"] == "Box same"
+    device.installation()
+
+
+@pytest.mark.parametrize(
+    "draft",
+    [
+        {},
+        {"name": ""},
+        {"name": "  "},
+        {"name": "x" * 129},
+        {"name": "x", "id": ""},
+        {"name": "x", "id": "a b"},
+        {"name": "x", "id": "../a"},
+        {"name": "x", "id": "a\n"},
+        {"name": "x", "id": "a" * 65},
+        {"name": "x", "notes": "n" * 4001},
+        {"name": "x", "role": "admin"},
+        {"name": "x\x00"},
+        [],
+    ],
+)
+def test_a_draft_is_checked(api: Api, draft: object) -> None:
+    problem = api.post("/devices", draft, 422)
+    assert problem["type"].endswith("invalid-request")
+    assert problem["errors"][0]["pointer"].startswith("/body")
+    assert api.get("/devices")["items"] == []
+
+
+def test_editing_changes_only_what_is_given(api: Api) -> None:
+    api.post("/devices", {"id": "a", "name": "A", "vehicle": "V", "notes": "N"}, 201)
+    edited = api.call("PATCH", "/devices/a", 200, json={"notes": "new"}).json()
+    assert (edited["name"], edited["vehicle"], edited["notes"]) == ("A", "V", "new")
+    edited = api.call("PATCH", "/devices/a", 200, json={"vehicle": None, "name": "B"}).json()
+    assert (edited["name"], edited["vehicle"], edited["notes"]) == ("B", None, "new")
+    api.call("PATCH", "/devices/a", 422, json={"name": None})
+    api.call("PATCH", "/devices/a", 422, json={"id": "b"})
+    assert api.call("PATCH", "/devices/a", 200, json={}).json() == edited
+    for missing in ("b", "a%00", "a%0A", "a%20b", "%2e%2e"):
+        api.call("PATCH", f"/devices/{missing}", 404, json={"name": "x"})
+
+
+def test_removing_removes_everything_of_the_device(api: Api, database: Database) -> None:
+    api.add_device("other").send_all(chunks()[:2])
+    with database.read() as tx:
+        before = counts(tx.connection)
+    device = api.add_device("gone")
+    device.send_all(chunks())
+    device.send(chunks()[0], 5, "b", expect=202)
+    api.call("DELETE", "/devices/gone", 204)
+    with database.read() as tx:
+        assert counts(tx.connection) == before
+    for method in ("GET", "DELETE"):
+        api.call(method, "/devices/gone", 404)
+    again = api.add_device("gone")
+    assert again.installation()["stage"] == "waiting"
+
+
+def counts(connection: sa.Connection) -> dict[str, int]:
+    tables = [table for table in metadata.sorted_tables if table.name not in {"events", "meta"}]
+    return {t.name: connection.execute(sa.select(sa.func.count()).select_from(t)).scalar_one() for t in tables}
+
+
+def test_the_list_is_found_page_by_page(api: Api) -> None:
+    names = ["b", "B", "a-2", "a", "a10", "Z", "0"]
+    for name in names:
+        api.add_device(name)
+    page = api.get("/devices", params={"limit": 3})
+    seen = ids(page)
+    api.call("DELETE", f"/devices/{seen[-1]}", 204)  # the one the cursor names
+    api.add_device("00")  # before the cursor: not seen any more
+    api.add_device("zz")  # after it: seen
+    while page["next_cursor"]:
+        page = api.get("/devices", params={"limit": 3, "cursor": page["next_cursor"]})
+        seen += ids(page)
+    assert seen == sorted([*names, "zz"])
+
+
+def test_the_list_is_filtered(api: Api) -> None:
+    api.post("/devices", {"id": "a", "name": "Ärmel", "vehicle": "Van_1", "notes": "100%"}, 201)
+    moving = api.add_device("b", vehicle="Van 1")
+    moving.send_all(chunks())
+    for q, found in {"van": ["a", "b"], "VAN_": ["a"], "0%": ["a"], "%": ["a"], "box b": ["b"], "nothing": []}.items():
+        assert ids(api.get("/devices", params={"q": q})) == found, q
+    assert ids(api.get("/devices", params={"stage": "confirmed"})) == ["b"]
+    assert ids(api.get("/devices", params={"stage": "waiting", "q": "van"})) == ["a"]
+    assert ids(api.get("/devices", params={"has_open_alert": True})) == []
+    assert ids(api.get("/devices", params={"has_open_alert": False})) == ["a", "b"]
+
+
+@pytest.mark.parametrize(
+    "query",
+    [{"limit": 0}, {"limit": 501}, {"stage": "x"}, {"cursor": "§"}, {"cursor": "_w"}, {"q": "x" * 129}, {"q": "\x00"}],
+)
+def test_a_query_is_checked(api: Api, query: dict[str, object]) -> None:
+    assert api.call("GET", "/devices", 422, params=query).json()["status"] == 422
+
+
+def test_the_summary_counts_stages_and_alerts(api: Api) -> None:
+    api.add_device("a")
+    api.add_device("b").send_all(chunks())
+    summary = api.get("/fleet/summary")
+    assert summary["devices"] == 2
+    assert summary["stages"] == {"waiting": 1, "aligning": 0, "settling": 0, "verifying": 0, "confirmed": 1}
+    assert (summary["open_alerts"], summary["alerts"]) == (0, {})
