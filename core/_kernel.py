@@ -1,8 +1,8 @@
 """Every numba function of the project: plain loops on records and scratch arrays.
 
 This file imports nothing of the project, so that numba's cache, which watches a single file, can never be stale; record
-layouts and parameters arrive as argument types. Equations and symbols are explained in the readable faces:
-`epochs`, `coarse_alignment`, `measurements`, `mekf`, `settling`, `verification`, `orientation_change`.
+layouts and parameters arrive as argument types. Records are explained in `state`, parameters in `params`, the method
+with its equations in `docs/method.md`. The order here is the order of the flow chart (thesis 6.2).
 
 Abbreviations: `p` parameters, `c` clock, `a` coarse alignment (accumulators), `m` filter, `s` settling, `v`
 verification, `g` change; `e` the epoch at hand.
@@ -61,7 +61,7 @@ EPOCH = np.dtype(
 
 @njit(cache=True, nogil=True)
 def rotation_matrix(q, r):
-    """r = R(q), thesis (C.3) with the scalar first."""
+    """R = R(q), thesis (C.3) with the scalar first."""
     w, x, y, z = q[0], q[1], q[2], q[3]
     r[0, 0] = 1 - 2 * (y * y + z * z)
     r[0, 1] = 2 * (x * y - w * z)
@@ -76,7 +76,7 @@ def rotation_matrix(q, r):
 
 @njit(cache=True, nogil=True)
 def turn(q, x, y, z):
-    """q = dq(a) * q with the Rodrigues vector a = (x, y, z), thesis (4.24) and (4.26)."""
+    """Q = dq(a) * q with the Rodrigues vector a = (x, y, z), thesis (4.24) and (4.26)."""
     n = 1.0 / math.sqrt(4.0 + x * x + y * y + z * z)
     w, x, y, z = 2 * n, x * n, y * n, z * n
     q0 = w * q[0] - x * q[1] - y * q[2] - z * q[3]
@@ -92,7 +92,7 @@ def turn(q, x, y, z):
 
 @njit(cache=True, nogil=True)
 def difference(q, p, d):
-    """d = rotation vector of q * p^-1, rad."""
+    """D = rotation vector of q * p^-1, rad."""
     w = q[0] * p[0] + q[1] * p[1] + q[2] * p[2] + q[3] * p[3]
     d[0] = -q[0] * p[1] + q[1] * p[0] - q[2] * p[3] + q[3] * p[2]
     d[1] = -q[0] * p[2] + q[1] * p[3] + q[2] * p[0] - q[3] * p[1]
@@ -110,12 +110,12 @@ def difference(q, p, d):
 @njit(cache=True, nogil=True)
 def wrap(angle):
     """Angle in [-pi, pi)."""
-    return angle - 2 * math.pi * math.floor((angle + math.pi) / (2 * math.pi))
+    return angle - 2 * math.pi * np.floor((angle + math.pi) / (2 * math.pi))
 
 
 @njit(cache=True, nogil=True)
 def mahalanobis(d, covariance):
-    """d' C^-1 d for three components (Cholesky)."""
+    """D' C^-1 d for three components (Cholesky)."""
     l00 = math.sqrt(covariance[0, 0])
     l10 = covariance[1, 0] / l00
     l20 = covariance[2, 0] / l00
@@ -209,7 +209,10 @@ def mean_signals(p, c, e, start, end, scratch):
     missing = 0.0
     for i in range(p["epoch_latency_count"]):
         shift = i * p["epoch_latency_step"]
-        if not (integral_at(c, start - shift, begin) and integral_at(c, end - shift, stop)):
+        if i == 0:
+            begin[:7] = c["fix_integral"]
+            stop[:7] = c["integral"]
+        elif not (integral_at(c, start - shift, begin) and integral_at(c, end - shift, stop)):
             return False
         for j in range(3):
             e["f_s"][i, j] = (stop[j] - begin[j]) / (end - start)
@@ -285,6 +288,7 @@ def start_epoch(c, t, speed, course):
     c["fix_speed"] = speed
     c["fix_course"] = course
     c["fix_altitude"] = c["altitude"]
+    c["fix_integral"][:] = c["integral"]
 
 
 @njit(cache=True, nogil=True)
@@ -405,7 +409,7 @@ def forget(a, factor):
 
 @njit(cache=True, nogil=True)
 def profile_matrix(a, h, prior, noise, gyro_noise, b):
-    """b = sum of f_s k_v' with the bias eliminated, in units of information; gives the sum of squares beside it."""
+    """B = sum of f_s k_v' with the bias eliminated, in units of information; gives the sum of squares beside it."""
     n = a["time"] + prior
     total = a["ff"][h]
     for i in range(3):
@@ -425,7 +429,7 @@ def profile_matrix(a, h, prior, noise, gyro_noise, b):
 
 @njit(cache=True, nogil=True)
 def best_rotation(b, q):
-    """Wahba's problem by Horn's quaternion: the rotation q with k ~ R(q) f for b = sum f k'; gives the largest eigenvalue."""
+    """Wahba's problem by Horn's quaternion: k ~ R(q) f for b = sum f k'; gives the largest eigenvalue."""
     n = np.empty((4, 4))
     n[0, 0] = b[0, 0] + b[1, 1] + b[2, 2]
     n[1, 1] = b[0, 0] - b[1, 1] - b[2, 2]
@@ -632,15 +636,17 @@ def start_from_coarse(p, m, a, speed, course):
 
 @njit(cache=True, nogil=True)
 def start_at_identity(p, m):
-    """Start as in thesis 5.2: x = 0, q = 1, P = Q; the heading follows from the first course in motion."""
+    """Start as in thesis 5.2: x = 0, P = Q, both quaternions 1 in the frames of the thesis.
+
+    Heading north, and sensor axes along forward, right, down. The heading follows from the first course in motion.
+    """
     m["covariance"][:] = 0.0
     m["speed"] = 0.0
     m["acceleration"] = 0.0
     m["yaw_rate"] = 0.0
-    m["q_nv"][:] = 0.0
-    m["q_nv"][0] = 1.0
+    set_heading(m, 0.0)
     m["q_vs"][:] = 0.0
-    m["q_vs"][0] = 1.0
+    m["q_vs"][1] = 1.0
     add_process_noise(p, m["covariance"], REFERENCE_PERIOD, 1.0, 1.0)
     m["running"] = True
     m["aligned"] = False
@@ -683,7 +689,7 @@ def predict(p, m, period):
 
 @njit(cache=True, nogil=True)
 def predict_measurements(m, z, h):
-    """z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate."""
+    """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate."""
     r_nv = np.empty((3, 3))
     r_vs = np.empty((3, 3))
     u = np.empty(3)
@@ -709,7 +715,7 @@ def predict_measurements(m, z, h):
         h[i, BIAS + i] = 1.0
         z[7 + i] = w * rate + m["gyro_bias"][i]
         h[7 + i, YAW_RATE] = w
-        h[7 + i, MOUNTING] = -y * 0.0 + y * rate
+        h[7 + i, MOUNTING] = y * rate
         h[7 + i, MOUNTING + 1] = -x * rate
         h[7 + i, GYRO_BIAS + i] = 1.0
         z[3 + i] = r_nv[i, 0] * speed
@@ -995,7 +1001,9 @@ def look_for_change(p, g, w, s):
         total[i, i] += s["mount_sigma"][i] ** 2 + p["settling_systematic_sigma"] ** 2
     distance = mahalanobis(d, total)
     before = g["evidence"]
-    g["evidence"] = max(0.0, before + min(distance - p["change_allowance"], p["change_cap"]))
+    gain = min(distance - p["change_allowance"], p["change_cap"])
+    if gain > 0 or largest_sigma(w["covariance"]) < p["change_acquit_sigma"]:  # a young window cannot acquit
+        g["evidence"] = max(0.0, before + gain)
     if before == 0.0 and g["evidence"] > 0.0:
         clear_sums(w)  # from here on only data from after the first suspicion count
         g["looked_time"] = 0.0
@@ -1218,7 +1226,7 @@ def current_progress(p, c, m, s, v, sigma, known):
 
 @njit(cache=True, nogil=True)
 def describe(p, c, a, m, s, v, row):
-    """Write the present state: t, quaternion, sigma, stage, needs, stable, reliable, progress; True with an estimate."""
+    """Write t, quaternion, sigma, stage, needs, stable, reliable, progress as they are; True with an estimate."""
     q, sigma = row[1:5], row[5:8]
     known = current_estimate(p, a, m, q, sigma)
     row[0] = c["t"]
@@ -1251,7 +1259,7 @@ def run(
     p, c, a, w, m = params[0], clock[0], coarse[0], window[0], mekf[0]
     s, v, g, e = settling[0], verification[0], change[0], epochs[0]
     scratch = np.zeros((8, 8))
-    k, b = np.zeros(3), np.zeros((3, 3))
+    b = np.zeros((3, 3))
     row_count, event_count, next_fix = 0, 0, 0
     for i in range(t.shape[0]):
         fix = -1

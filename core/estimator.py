@@ -1,8 +1,8 @@
 """The only door to the estimator: `advance(params, state, samples) -> (state, outcome)`.
 
 The stages in order, as in the flow chart of thesis 6.2: samples -> epochs -> coarse alignment -> filter -> moving
-average, STABLE, RELIABLE -> drive test -> confirmed mounting -> watch for an orientation change. States are values: none
-of these functions changes its arguments.
+average, STABLE, RELIABLE -> drive test -> confirmed mounting -> watch for an orientation change. States are values:
+none of these functions changes its arguments.
 """
 
 import math
@@ -157,9 +157,7 @@ def _event(params: Parameters, row: Floats) -> Event:
         kind=kind,
         quaternion=row[2:6].copy(),
         sigma=row[6:9].copy(),
-        verification=None
-        if change
-        else Verification(state, float(row[9]), test.duration, float(row[10]), test.limit),
+        verification=None if change else Verification(state, float(row[9]), test.duration, float(row[10]), test.limit),
         angle=float(row[11]) if change else None,
         reason=_REASONS[int(row[12])],
     )

@@ -159,7 +159,9 @@ class ChangeParameters:
     """s of motion, forgetting time; infinite = no detection"""
     interval: float = 5.0
     """s of motion between two looks"""
-    allowance: float = 10.0
+    acquit_sigma: float = 5.0 * DEGREE
+    """rad; a look takes evidence away only when the largest sigma of the window is below"""
+    allowance: float = 12.0
     """squared Mahalanobis distance (3 degrees of freedom) a look may show without adding evidence"""
     threshold: float = 60.0
     """evidence that decides"""

@@ -15,14 +15,15 @@ GIMBAL_LOCK_COSINE = 1e-6
 
 def normalise(q: ArrayLike) -> Floats:
     """Scale to unit length with w >= 0 (q and -q are the same rotation)."""
-    q = np.asarray(q, np.float64)
-    q = q / np.linalg.norm(q, axis=-1, keepdims=True)
-    return np.where(q[..., :1] < 0, -q, q)
+    raw: Floats = np.asarray(q, np.float64)
+    unit: Floats = raw / np.linalg.norm(raw, axis=-1, keepdims=True)
+    return np.where(unit[..., :1] < 0, -unit, unit)
 
 
 def conjugate(q: ArrayLike) -> Floats:
     """Give the inverse rotation."""
-    return np.asarray(q, np.float64) * np.array([1.0, -1.0, -1.0, -1.0])
+    inverse: Floats = np.asarray(q, np.float64) * np.array([1.0, -1.0, -1.0, -1.0])
+    return inverse
 
 
 def multiply(q: ArrayLike, p: ArrayLike) -> Floats:
@@ -77,7 +78,8 @@ def rotation_vector(q: ArrayLike) -> Floats:
     q = normalise(q)
     sine = np.linalg.norm(q[..., 1:], axis=-1, keepdims=True)
     angle = 2 * np.arctan2(sine, q[..., :1])
-    return q[..., 1:] * np.where(sine > 0, angle / np.where(sine > 0, sine, 1.0), 2.0)
+    vector: Floats = q[..., 1:] * np.where(sine > 0, angle / np.where(sine > 0, sine, 1.0), 2.0)
+    return vector
 
 
 def angle_between(q: ArrayLike, p: ArrayLike) -> Floats:

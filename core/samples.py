@@ -1,6 +1,7 @@
 """IMU samples and GPS fixes of one chunk: validated once at the border, trusted afterwards."""
 
-from typing import NamedTuple, Self
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,7 +30,8 @@ class SampleError(ValueError):
         self.row = row
 
 
-class Samples(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Samples:
     """Samples of one session in time order. SI units and radians; N IMU samples, M GPS reports."""
 
     t: Floats
@@ -70,7 +72,12 @@ class Samples(NamedTuple):
         row = np.ascontiguousarray(fix_row, np.int64)
         valid = np.ascontiguousarray(fix_valid, np.bool_)
         fix_ = np.empty((0, 8)) if fix is None else np.ascontiguousarray(fix, np.float64).reshape(-1, 8)
-        if t_.ndim != 1 or f_s_.shape[0] != n or w_s_.shape[0] != n or not row.shape[0] == valid.shape[0] == fix_.shape[0]:
+        if (
+            t_.ndim != 1
+            or f_s_.shape[0] != n
+            or w_s_.shape[0] != n
+            or not row.shape[0] == valid.shape[0] == fix_.shape[0]
+        ):
             raise SampleError("the columns have different lengths")
         _check_finite(t_, "time is not a finite number")
         _check_finite(f_s_.sum(axis=1), "specific force is not a finite number")
@@ -80,7 +87,7 @@ class Samples(NamedTuple):
         return cls(t_, f_s_, w_s_, row, valid, fix_)
 
     def __len__(self) -> int:
-        """Give the number of IMU samples (a NamedTuple would give its number of fields)."""
+        """Give the number of IMU samples."""
         return int(self.t.size)
 
     def slice(self, start: int, stop: int) -> Self:

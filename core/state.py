@@ -31,6 +31,7 @@ CLOCK = np.dtype(
         ("fix_speed", "f8"),
         ("fix_course", "f8"),  # rad clockwise from north, nan = unknown
         ("fix_altitude", "f8"),  # m, smoothed, nan = unknown
+        ("fix_integral", "f8", (7,)),  # the integral at fix_t
         ("climb", "f8"),  # m/s, smoothed
         ("altitude_t", "f8"),  # s, last altitude
         ("altitude", "f8"),  # m, smoothed, nan = unknown
