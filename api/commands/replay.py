@@ -13,7 +13,7 @@ from rich.table import Table
 
 import core
 from api.commands import output
-from api.formats import FormatError, Sense
+from api.formats import FormatError, Reading, Sense
 from api.formats.files import Format, open_log
 from api.services import presenting
 from core import PRESETS, Event, Outcome, Parameters, Samples, Status
@@ -56,11 +56,11 @@ def run(logs: list[Path], log_format: Format | None, preset: str, every: float, 
     results: list[Result] = []
     for path in logs:
         try:
-            samples = _read(path, log_format, course)
+            reading = _read(path, log_format, course)
         except (FormatError, OSError) as error:
             _explain(path, error)
             continue
-        results.append(_replay(path, samples, params, _print_json if as_json else _print_nothing))
+        results.append(_replay(path, reading, params, _print_json if as_json else _print_nothing))
         if as_json:
             typer.echo(json.dumps(_summary(results[-1]), allow_nan=False))
     if results and not as_json:
@@ -69,11 +69,11 @@ def run(logs: list[Path], log_format: Format | None, preset: str, every: float, 
         raise typer.Exit(output.UNREADABLE)
 
 
-def _read(path: Path, log_format: Format | None, course: Sense) -> Samples:
+def _read(path: Path, log_format: Format | None, course: Sense) -> Reading:
     log = open_log(path, log_format).parse(course)
     for notice in log.notices:
         output.complain(f"{path}: {notice}")
-    return log.samples().samples
+    return log.samples()
 
 
 def _explain(path: Path, error: FormatError | OSError) -> None:
@@ -85,10 +85,11 @@ def _explain(path: Path, error: FormatError | OSError) -> None:
             output.complain(f"{path}: {sentence}")
 
 
-def _replay(path: Path, samples: Samples, params: Parameters, show: Callable[[Outcome], None]) -> Result:
+def _replay(path: Path, reading: Reading, params: Parameters, show: Callable[[Outcome], None]) -> Result:
     """Run the estimator over one log in pieces, a progress bar on the terminal."""
     state = core.begin_session(params, core.initial_state(params))
-    status, used, fixes, rejected = core.status(params, state), 0, 0, Counter[str]()
+    status, used, fixes, rejected = core.status(params, state), 0, 0, Counter(reading.rejected)
+    samples = reading.samples
     duration = float(samples.t[-1] - samples.t[0])
     with output.progress() as bar:
         task = bar.add_task(path.name, total=duration)

@@ -2,6 +2,7 @@
 
 import copy
 import os
+import sqlite3
 from typing import Any
 
 import typer
@@ -66,7 +67,7 @@ def _prepare(settings: Settings) -> str | None:
             return startup.prepare(context)
         finally:
             context.database.close()
-    except (SQLAlchemyError, OSError) as error:
+    except (SQLAlchemyError, sqlite3.Error, OSError) as error:
         output.fail(f"The database cannot be used: {_without_secrets(error)}")
 
 
