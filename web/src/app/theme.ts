@@ -13,11 +13,25 @@ const petrol: MantineColorsTuple = [
   "#055a79",
 ];
 
+/** The grounds and lines of the dark scheme, with a little of the accent's blue in them. */
+const dark: MantineColorsTuple = [
+  "#e6edf2",
+  "#c5d0d9",
+  "#a3b1bd",
+  "#74858f",
+  "#3a4955",
+  "#2b3843",
+  "#212c35",
+  "#182129",
+  "#121a20",
+  "#0c1216",
+];
+
 /** One accent colour; large touch targets; the reader's own system font, so that nothing is fetched. */
 export const theme = createTheme({
   primaryColor: "petrol",
   primaryShade: { light: 8, dark: 8 },
-  colors: { petrol },
+  colors: { petrol, dark },
   defaultRadius: "md",
   fontFamily: "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', 'Liberation Sans', sans-serif",
   fontFamilyMonospace: "ui-monospace, 'SF Mono', 'Roboto Mono', 'Liberation Mono', monospace",
@@ -68,6 +82,8 @@ export const colours: CSSVariablesResolver = () => ({
     "--livella-x": "#b8340a",
     "--livella-y": "#1d7a3f",
     "--livella-z": "#2456d6",
+    "--livella-car": "#8fa3b3",
+    "--livella-tyre": "#3c4954",
   },
   dark: {
     "--mantine-color-body": "#0f151a",
@@ -89,5 +105,7 @@ export const colours: CSSVariablesResolver = () => ({
     "--livella-x": "#ff9a70",
     "--livella-y": "#66cf8b",
     "--livella-z": "#8fb0ff",
+    "--livella-car": "#8ba0b0",
+    "--livella-tyre": "#0a0f13",
   },
 });

@@ -20,7 +20,7 @@ export function Copyable({ label, text }: { label: string; text: string }) {
           {copied ? <Check size={20} aria-hidden /> : <Copy size={20} aria-hidden />}
         </ActionIcon>
       </div>
-      <span className="mantine-visually-hidden" role="status">
+      <span className="visually-hidden" role="status">
         {copied ? "Copied" : ""}
       </span>
     </div>

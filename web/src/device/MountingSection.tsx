@@ -3,6 +3,7 @@ import { ClockTime } from "../components/RelativeTime";
 import { Section } from "../components/Section";
 import { Empty } from "../components/States";
 import { Pill } from "../components/Tone";
+import { fixed } from "../lib/format";
 import { describe } from "../lib/words";
 import css from "./device.module.css";
 import { Picture } from "./picture/Picture";
@@ -63,7 +64,7 @@ function Angle({ word, axis, degrees }: { word: string; axis: "x" | "y" | "z"; d
   return (
     <div style={{ "--angle": `var(--livella-${axis})` }}>
       <dt>{word}</dt>
-      <dd>{degrees.toFixed(1)}°</dd>
+      <dd>{fixed(degrees, 1)}°</dd>
     </div>
   );
 }

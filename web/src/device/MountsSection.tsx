@@ -5,6 +5,7 @@ import { ClockTime } from "../components/RelativeTime";
 import { Section } from "../components/Section";
 import { Empty, Failed, Loading } from "../components/States";
 import { Pill } from "../components/Tone";
+import { fixed } from "../lib/format";
 import type { Tone } from "../lib/stages";
 import css from "./device.module.css";
 
@@ -46,7 +47,7 @@ function MountRow({ mount }: { mount: Mount }) {
         <Pill tone={tone}>{word}</Pill>
       </div>
       <div className={css.quiet}>
-        Roll {roll.toFixed(1)}°, pitch {pitch.toFixed(1)}°, yaw {yaw.toFixed(1)}°
+        Roll {fixed(roll, 1)}°, pitch {fixed(pitch, 1)}°, yaw {fixed(yaw, 1)}°
         {error !== null && ` · drive test ${Math.abs(error).toFixed(1)} m/s`}
       </div>
     </>

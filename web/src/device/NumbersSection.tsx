@@ -1,5 +1,6 @@
 import { Copyable } from "../components/Copyable";
 import { Section } from "../components/Section";
+import { fixed } from "../lib/format";
 import css from "./device.module.css";
 import type { Shown } from "./shown";
 
@@ -43,7 +44,7 @@ export function MatrixTable({ matrix }: { matrix: Shown["matrix"] }) {
             <th scope="row">{name}</th>
             {values.map((value, column) => (
               // biome-ignore lint/suspicious/noArrayIndexKey: a matrix's columns are their places
-              <td key={column}>{value.toFixed(4)}</td>
+              <td key={column}>{fixed(value, 4)}</td>
             ))}
           </tr>
         ))}

@@ -1,10 +1,11 @@
-import { Anchor, Button, Tooltip } from "@mantine/core";
+import { Anchor } from "@mantine/core";
 import { ArrowLeft, Printer } from "lucide-react";
 import { Link } from "wouter";
 import { useMay } from "../api/session";
 import type { Installation } from "../api/types";
 import { RelativeTime } from "../components/RelativeTime";
 import css from "./device.module.css";
+import { HeadAction } from "./HeadAction";
 import { RefitButton } from "./RefitButton";
 
 interface PageHeadProps {
@@ -34,15 +35,7 @@ export function PageHead({ name, vehicle, installation }: PageHeadProps) {
         </p>
       </div>
       <div className={css.actions}>
-        <Tooltip label="One page for the vehicle’s file">
-          <Button
-            variant="default"
-            leftSection={<Printer size={20} aria-hidden />}
-            onClick={() => window.print()}
-          >
-            Print
-          </Button>
-        </Tooltip>
+        <HeadAction icon={Printer} label="Print the record" onClick={() => window.print()} />
         {installer && <RefitButton id={id} />}
       </div>
     </header>

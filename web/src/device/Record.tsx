@@ -1,6 +1,7 @@
 import type { Device, Installation } from "../api/types";
 import { Logo } from "../app/Logo";
 import { ClockTime } from "../components/RelativeTime";
+import { fixed } from "../lib/format";
 import { STAGE } from "../lib/stages";
 import { describe } from "../lib/words";
 import { MatrixTable } from "./NumbersSection";
@@ -90,7 +91,7 @@ function Mounting({ shown }: { shown: Shown }) {
             {rows.map(([word, degrees, sigma]) => (
               <tr key={word}>
                 <th scope="row">{word}</th>
-                <td>{degrees.toFixed(2)}</td>
+                <td>{fixed(degrees, 2)}</td>
                 <td>± {sigma.toFixed(2)}</td>
               </tr>
             ))}

@@ -3,6 +3,7 @@ import { useDisclosure } from "@mantine/hooks";
 import { RotateCcw } from "lucide-react";
 import { useRestart } from "../api/queries";
 import { Failed } from "../components/States";
+import { HeadAction } from "./HeadAction";
 
 /** Start again after the device was deliberately fitted elsewhere. Asks first: the mounting in force ends with it. */
 export function RefitButton({ id }: { id: string }) {
@@ -14,9 +15,7 @@ export function RefitButton({ id }: { id: string }) {
   };
   return (
     <>
-      <Button variant="default" leftSection={<RotateCcw size={20} aria-hidden />} onClick={dialog.open}>
-        Refitted
-      </Button>
+      <HeadAction icon={RotateCcw} label="Device refitted" onClick={dialog.open} />
       <Modal opened={opened} onClose={close} title="Was the device fitted anew?">
         <Stack>
           <p style={{ margin: 0 }}>

@@ -23,7 +23,7 @@ export function StageSection({ installation }: { installation: Installation }) {
         <Progress stage={stage} progress={progress} />
         <span aria-hidden>{Math.round(progress * 100)} %</span>
       </div>
-      <p className="mantine-visually-hidden" role="status">
+      <p className="visually-hidden" role="status">
         Stage: {STAGE[stage].word}. {hint}
       </p>
     </section>

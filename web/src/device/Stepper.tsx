@@ -17,8 +17,10 @@ export function Stepper({ stage }: { stage: Stage }) {
         return (
           <li key={step} data-state={state} aria-current={i === now ? "step" : undefined}>
             <i aria-hidden>{done ? <Check size={16} strokeWidth={3} /> : i + 1}</i>
-            <span title={STAGE[step].meaning}>{STAGE[step].word}</span>
-            <span className="mantine-visually-hidden">{SAID[state]}</span>
+            <span className={css.word} title={STAGE[step].meaning}>
+              {STAGE[step].word}
+            </span>
+            <span className="visually-hidden">{SAID[state]}</span>
           </li>
         );
       })}

@@ -25,7 +25,7 @@ export function UncertaintySection({ shown }: { shown: Shown | null }) {
               limit={SIGMA_LIMIT[i] ?? Number.NaN}
             />
           ))}
-          <p className={css.note}>One standard deviation. The mark is the limit for a test drive.</p>
+          <p className={css.note}>One standard deviation. The marks are what the drive test needs.</p>
         </div>
       ) : (
         <p className={css.quiet}>Nothing is known yet.</p>

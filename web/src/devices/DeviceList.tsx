@@ -35,7 +35,7 @@ function Row({ device }: { device: Device }) {
         <Link href={`/devices/${encodeURIComponent(device.id)}`}>{device.name}</Link>
         <span>{device.id}</span>
       </div>
-      <div className={css.vehicle}>{device.vehicle ?? "–"}</div>
+      <div className={css.vehicle}>{device.vehicle ?? <span className={css.unknown}>–</span>}</div>
       <div className={css.stage}>
         <StageBadge stage={device.stage} />
         <Progress stage={device.stage} progress={device.progress} />
@@ -55,7 +55,7 @@ function Alerts({ device }: { device: Device }) {
   return (
     <Pill tone={device.mount_status === "suspect" ? "bad" : "warn"} icon={TriangleAlert}>
       {device.mount_status === "suspect" ? "Moved" : device.open_alerts}
-      <span className="mantine-visually-hidden"> open alerts</span>
+      <span className="visually-hidden"> open alerts</span>
     </Pill>
   );
 }

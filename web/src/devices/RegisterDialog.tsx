@@ -1,5 +1,5 @@
 import { Button, Collapse, Group, Modal, Stack, Textarea, TextInput } from "@mantine/core";
-import { useDisclosure } from "@mantine/hooks";
+import { useDisclosure, useMediaQuery } from "@mantine/hooks";
 import { type FormEvent, useState } from "react";
 import { Problem } from "../api/http";
 import { useRegister } from "../api/queries";
@@ -14,6 +14,7 @@ type Fields = typeof EMPTY;
 export function RegisterDialog({ opened, onClose }: { opened: boolean; onClose: () => void }) {
   const register = useRegister();
   const [fields, setFields] = useState(EMPTY);
+  const phone = useMediaQuery("(max-width: 36em)");
   const close = () => {
     onClose();
     register.reset();
@@ -25,6 +26,7 @@ export function RegisterDialog({ opened, onClose }: { opened: boolean; onClose: 
       opened={opened}
       onClose={close}
       title={done ? "The device is registered" : "Register a device"}
+      fullScreen={phone}
       closeOnClickOutside={!done}
       closeOnEscape={!done}
     >

@@ -33,6 +33,7 @@ export function Registered({ registered: { device, key }, onDone }: RegisteredPr
   );
 }
 
+/** For a shell, one option a line. */
 export function uploadCommand(id: string, key: string, server: string): string {
-  return `livella upload drive.csv --server ${server} --device ${id} --key ${key}`;
+  return [`livella upload drive.csv`, `--server ${server}`, `--device ${id}`, `--key ${key}`].join(" \\\n  ");
 }

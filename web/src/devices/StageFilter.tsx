@@ -15,7 +15,7 @@ export function StageFilter({ filter, onChange, summary }: StageFilterProps) {
   const all = filter.stage === "" && !filter.hasOpenAlert;
   return (
     <fieldset className={css.chips}>
-      <legend className="mantine-visually-hidden">Filter by stage</legend>
+      <legend className="visually-hidden">Filter by stage</legend>
       <Chip
         word="All"
         count={summary?.devices}

@@ -3,6 +3,7 @@ import { useEffect, useRef, useState } from "react";
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { wrap } from "../../lib/angles";
+import { fixed } from "../../lib/format";
 import { onTheClock } from "../../lib/time";
 import { type Angle, type AngleHistory, verticalRange } from "./history";
 import css from "./history.module.css";
@@ -13,18 +14,21 @@ const WORD: Record<Angle, { word: string; axis: "x" | "y" | "z" }> = {
   pitch: { word: "Pitch", axis: "y" },
   yaw: { word: "Yaw", axis: "z" },
 };
-const HEIGHT = 150;
+/** Pixels; only the lowest chart carries the time axis. */
+const HEIGHT = { chart: 110, axis: 24 };
 
 interface AngleChartProps {
   angle: Angle;
   history: AngleHistory;
   onZoom: (from: number, to: number) => void;
+  /** the lowest chart tells the time */
+  lowest: boolean;
 }
 
 /** One angle over time with its band of one sigma; the value under the cursor, or the last one, stands above it. */
-export function AngleChart({ angle, history, onZoom }: AngleChartProps) {
+export function AngleChart({ angle, history, onZoom, lowest }: AngleChartProps) {
   const [row, setRow] = useState<number | null>(null);
-  const element = usePlot(angle, history, setRow, onZoom);
+  const element = usePlot({ angle, history, onZoom, lowest }, setRow);
   const text = reading(history, angle, row);
   const { word, axis } = WORD[angle];
   return (
@@ -42,10 +46,8 @@ export function AngleChart({ angle, history, onZoom }: AngleChartProps) {
 }
 
 function usePlot(
-  angle: Angle,
-  history: AngleHistory,
+  { angle, history, onZoom, lowest }: AngleChartProps,
   onCursor: (row: number | null) => void,
-  onZoom: AngleChartProps["onZoom"],
 ) {
   const element = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot>(null);
@@ -57,16 +59,18 @@ function usePlot(
   useEffect(() => {
     const target = element.current;
     if (!target) return;
+    const height = HEIGHT.chart + (lowest ? HEIGHT.axis : 0);
     const colour = getComputedStyle(target).getPropertyValue(`--livella-${WORD[angle].axis}`);
     const options = plotOptions({
       element: target,
       colour,
-      height: HEIGHT,
+      height,
+      axisHeight: lowest ? HEIGHT.axis : 0,
       onCursor: (found) => handlers.current.onCursor(found),
       onZoom: (from, to) => handlers.current.onZoom(from, to),
     });
     const made = new uPlot(options, [[]], target);
-    const watcher = new ResizeObserver(() => made.setSize({ width: target.clientWidth, height: HEIGHT }));
+    const watcher = new ResizeObserver(() => made.setSize({ width: target.clientWidth, height }));
     watcher.observe(target);
     plot.current = made;
     return () => {
@@ -74,17 +78,17 @@ function usePlot(
       made.destroy();
       plot.current = null;
     };
-  }, [angle, scheme]);
+  }, [angle, lowest, scheme]);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: a chart made anew needs its data again
   useEffect(() => {
     const { value, low, high } = history.angles[angle];
-    const [min, max] = verticalRange(history.angles[angle]);
+    const [min, max] = verticalRange(history, angle);
     plot.current?.batch(() => {
       plot.current?.setData([history.time, value, low, high]);
       plot.current?.setScale("y", { min, max });
     });
-  }, [angle, history, scheme]);
+  }, [angle, history, lowest, scheme]);
 
   return element;
 }
@@ -95,5 +99,5 @@ function reading(history: AngleHistory, angle: Angle, row: number | null): { val
   const v = value[at];
   if (v === null || v === undefined) return { value: "–", when: "" };
   const when = row === at ? onTheClock(new Date((history.time[at] ?? 0) * 1000)) : "";
-  return { value: `${wrap(v).toFixed(1)}° ± ${((high[at] ?? v) - v).toFixed(1)}°`, when };
+  return { value: `${fixed(wrap(v), 1)}° ± ${((high[at] ?? v) - v).toFixed(1)}°`, when };
 }

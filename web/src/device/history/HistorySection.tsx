@@ -46,10 +46,6 @@ export function HistorySection({ id, lastData }: HistoryProps) {
   return (
     <Section title="Angle history" aside={controls} className="no-print">
       <Charts id={id} window={window} onZoom={zoom} />
-      <p className={css.note}>
-        The band is one standard deviation. Drag across a chart to zoom. Near a pitch of ±90° roll and yaw are
-        not unique.
-      </p>
     </Section>
   );
 }
@@ -74,7 +70,7 @@ function Charts({
   if (!history) return <Loading what="the history" lines={6} />;
   if (history.time.length === 0) {
     return (
-      <Empty icon={ChartLine} title="No angles yet">
+      <Empty icon={ChartLine} title={window.to ? "No angles in this span" : "No angles yet"}>
         The curve begins with the first estimate.
       </Empty>
     );
@@ -82,8 +78,18 @@ function Charts({
   return (
     <div className={css.charts}>
       {ANGLES.map((angle) => (
-        <AngleChart key={angle} angle={angle} history={history} onZoom={onZoom} />
+        <AngleChart
+          key={angle}
+          angle={angle}
+          history={history}
+          onZoom={onZoom}
+          lowest={angle === ANGLES.at(-1)}
+        />
       ))}
+      <p className={css.note}>
+        The band is one standard deviation. Drag across a chart to zoom. Near a pitch of ±90° roll and yaw are
+        not unique.
+      </p>
     </div>
   );
 }

@@ -4,7 +4,9 @@ import { angleHistory, rangeStart, verticalRange } from "./history";
 
 const START = Date.parse("2025-11-22T10:00:00Z") / 1000;
 
-function estimates(rows: { t: number; yaw: number; sigma?: number; session?: string }[]): Estimates {
+function estimates(
+  rows: { t: number; yaw: number; sigma?: number; session?: string; stage?: "aligning" }[],
+): Estimates {
   const fill = <T>(value: T) => rows.map(() => value);
   return {
     session: rows.map(({ session }) => session ?? "s"),
@@ -13,7 +15,7 @@ function estimates(rows: { t: number; yaw: number; sigma?: number; session?: str
     quaternion: fill([1, 0, 0, 0]),
     angles_deg: { roll: fill(0), pitch: fill(1), yaw: rows.map(({ yaw }) => yaw) },
     sigma_deg: rows.map(({ sigma }) => [0.1, 0.2, sigma ?? 0.5]),
-    stage: fill("settling"),
+    stage: rows.map(({ stage }) => stage ?? "settling"),
     stable: fill(false),
     reliable: fill(false),
     progress: fill(0.5),
@@ -62,7 +64,7 @@ describe("angleHistory", () => {
 
 describe("verticalRange", () => {
   const range = (rows: Parameters<typeof estimates>[0]) =>
-    verticalRange(angleHistory(estimates(rows)).angles.yaw);
+    verticalRange(angleHistory(estimates(rows)), "yaw");
 
   it("shows at least four degrees", () => {
     const [low, high] = range([{ t: 0, yaw: 50, sigma: 0.1 }]);
@@ -70,13 +72,17 @@ describe("verticalRange", () => {
     expect((low + high) / 2).toBeCloseTo(50);
   });
 
-  it("is not blown up by the band of the first, rough estimates", () => {
+  it("is not blown up by the first, rough estimates", () => {
     const [low, high] = range([
-      { t: 0, yaw: 50, sigma: 90 },
+      { t: 0, yaw: -80, sigma: 20, stage: "aligning" },
       { t: 5, yaw: 52, sigma: 0.5 },
     ]);
     expect(low).toBeGreaterThan(45);
     expect(high).toBeLessThan(57);
+  });
+
+  it("shows them while there are no others", () => {
+    expect(range([{ t: 0, yaw: -80, sigma: 20, stage: "aligning" }])[0]).toBeLessThan(-100);
   });
 });
 

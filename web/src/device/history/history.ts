@@ -11,7 +11,11 @@ export interface AngleHistory {
   time: number[];
   /** degrees without jumps at +-180, and the band of one sigma about them; null = gap */
   angles: Record<Angle, { value: Column; low: Column; high: Column }>;
+  /** rows later than the rough alignment */
+  settled: boolean[];
 }
+
+const ROUGH: ReadonlySet<string> = new Set(["waiting", "aligning"]);
 
 /** s; neighbours further apart than this, and than a few usual steps, are not joined by a line */
 const SHORTEST_GAP = 60;
@@ -29,6 +33,7 @@ export function angleHistory(estimates: Estimates): AngleHistory {
   return {
     time: broken(time, breaks, null).map((t, i, all) => t ?? ((all[i - 1] ?? 0) + (all[i + 1] ?? 0)) / 2),
     angles: Object.fromEntries(columns) as AngleHistory["angles"],
+    settled: broken(estimates.stage, breaks, null).map((stage) => stage !== null && !ROUGH.has(stage)),
   };
 }
 
@@ -52,16 +57,13 @@ function band(value: Column, sigma: Column) {
 
 /** Degrees; the vertical axis never shows less, so that noise does not look like movement. */
 const LEAST_SPAN = 4;
-/** Degrees; a wider band (the first, rough estimates) may leave the picture. */
-const WIDEST_BAND = 10;
-
-/** Range of the vertical axis: all values, and the band where it is narrow. */
-export function verticalRange({ value, low, high }: AngleHistory["angles"][Angle]): [number, number] {
-  const inside = value.flatMap((v, i) => {
-    if (v === null) return [];
-    const width = (high[i] ?? v) - v;
-    return width > WIDEST_BAND ? [v] : [low[i] ?? v, high[i] ?? v];
-  });
+/** Range of the vertical axis: the band, without the first rough estimates where there are better ones. */
+export function verticalRange({ angles, settled }: AngleHistory, angle: Angle): [number, number] {
+  const { low, high } = angles[angle];
+  const all = !settled.includes(true);
+  const inside = [low, high].flatMap(
+    (edge) => edge.filter((v, i) => v !== null && (all || settled[i])) as number[],
+  );
   if (inside.length === 0) return [-LEAST_SPAN / 2, LEAST_SPAN / 2];
   const least = inside.reduce((a, b) => Math.min(a, b));
   const greatest = inside.reduce((a, b) => Math.max(a, b));

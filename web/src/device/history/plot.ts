@@ -1,11 +1,15 @@
 /** Options of one angle's chart. Colours come from the page's own variables, so that light and dark both fit. */
 import type uPlot from "uplot";
 import { wrap } from "../../lib/angles";
+import { fixed } from "../../lib/format";
 
 export interface PlotSettings {
   element: HTMLElement;
   colour: string;
+  /** pixels, with the time axis */
   height: number;
+  /** pixels of the time axis; 0 = none */
+  axisHeight: number;
   onCursor: (row: number | null) => void;
   onZoom: (from: number, to: number) => void;
 }
@@ -16,7 +20,7 @@ const SYNC = "livella-angles";
 const SHORTEST_DRAG = 8;
 
 export function plotOptions(settings: PlotSettings): uPlot.Options {
-  const { element, colour, height, onCursor, onZoom } = settings;
+  const { element, colour, height, axisHeight, onCursor, onZoom } = settings;
   const style = getComputedStyle(element);
   const line = style.getPropertyValue("--livella-line");
   const ink = style.getPropertyValue("--mantine-color-dimmed");
@@ -34,7 +38,11 @@ export function plotOptions(settings: PlotSettings): uPlot.Options {
       y: false,
     },
     scales: { x: { time: true } },
-    axes: [axis, { ...axis, size: 52, space: 28, values: (_, ticks) => ticks.map(tickText) }],
+    padding: [6, 12, 6, 0],
+    axes: [
+      { ...axis, size: axisHeight, space: 70, values: (_, ticks, __, ___, step) => timeTexts(ticks, step) },
+      { ...axis, size: 52, space: 24, values: (_, ticks) => ticks.map(tickText) },
+    ],
     series: [{}, { stroke: colour, width: 2, points: { show: false } }, edge, edge],
     bands: [{ series: [3, 2], fill: withAlpha(colour, 0.18) }],
     hooks: {
@@ -44,9 +52,24 @@ export function plotOptions(settings: PlotSettings): uPlot.Options {
   };
 }
 
+const SECONDS = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit", second: "2-digit" });
+const MINUTES = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit" });
+const DAYS = new Intl.DateTimeFormat("en-GB", { day: "numeric", month: "short" });
+
+/** Times as fine as the steps between them; midnight shows the date. */
+function timeTexts(ticks: readonly number[], step: number): string[] {
+  const usual = step < 60 ? SECONDS : step < 86_400 ? MINUTES : DAYS;
+  return ticks.map((tick) => {
+    const time = new Date(tick * 1000);
+    const midnight = time.getHours() + time.getMinutes() + time.getSeconds() === 0;
+    return (midnight ? DAYS : usual).format(time);
+  });
+}
+
 /** The curve runs on beyond 180 degrees; its labels do not. */
 function tickText(tick: number): string {
-  return `${Number(wrap(tick).toFixed(1))}°`;
+  const degrees = wrap(tick);
+  return `${fixed(degrees, Number.isInteger(degrees) ? 0 : 1)}°`;
 }
 
 function zoom(plot: uPlot, onZoom: PlotSettings["onZoom"]): void {

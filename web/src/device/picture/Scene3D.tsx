@@ -67,8 +67,9 @@ function palette(element: HTMLElement): Palette {
   const style = getComputedStyle(element);
   const colour = (name: string) => style.getPropertyValue(name).trim();
   return {
-    car: colour("--mantine-color-dimmed"),
-    edge: colour("--mantine-color-dimmed"),
+    car: colour("--livella-car"),
+    line: colour("--livella-line"),
+    tyre: colour("--livella-tyre"),
     ink: colour("--mantine-color-text"),
     box: colour("--livella-accent"),
     axes: [colour("--livella-x"), colour("--livella-y"), colour("--livella-z")],

@@ -5,7 +5,6 @@ import {
   type BufferGeometry,
   CanvasTexture,
   CylinderGeometry,
-  DoubleSide,
   EdgesGeometry,
   ExtrudeGeometry,
   Group,
@@ -13,61 +12,83 @@ import {
   LineSegments,
   Mesh,
   MeshStandardMaterial,
+  type Object3D,
   Shape,
   Sprite,
   SpriteMaterial,
   SRGBColorSpace,
+  Vector2,
   Vector3,
 } from "three";
 
 export interface Palette {
   car: string;
-  edge: string;
+  line: string;
+  tyre: string;
   ink: string;
   box: string;
   axes: readonly [string, string, string];
 }
 
 type Profile = readonly (readonly [number, number])[];
-const BODY: Profile = [
-  [-2.15, 0.28], [-2.2, 0.75], [-2.05, 0.95], [-1.55, 1.4], [0.15, 1.45], [0.95, 0.95], [2.0, 0.82], [2.2, 0.6], [2.2, 0.28],
-]; // biome-ignore format: one outline
-const WIDTH = 1.75;
-const WHEELS = [[1.35, 0.78], [1.35, -0.78], [-1.3, 0.78], [-1.3, -0.78]] as const; // biome-ignore format: pairs
+
+/** Outlines in the plane of x and z. */
+// biome-ignore format: one outline a line
+const BODY: Profile = [[-2.05, 0.36], [-2.1, 0.7], [-1.95, 0.86], [0.95, 0.86], [1.9, 0.74], [2.05, 0.56], [2.05, 0.36]];
+const CABIN: Profile = [
+  [-1.8, 0.9],
+  [-1.35, 1.36],
+  [0.05, 1.38],
+  [0.9, 0.9],
+];
+const WIDTH = { body: 1.5, cabin: 1.26 };
+const BEVEL = 0.12;
+const WHEEL = { radius: 0.33, width: 0.22, front: 1.3, rear: -1.25, side: 0.8 };
 
 /** The device stands where dashboards are, drawn several times larger than it is. */
-const DEVICE_AT = new Vector3(0.35, 0, 0.95);
-const DEVICE_SIZE = [0.62, 0.42, 0.2] as const;
-const AXIS_LENGTH = 1.25;
-const HEAD = [0.24, 0.13] as const;
+const DEVICE_AT = new Vector3(0.45, 0, 1.05);
+const DEVICE_SIZE = [0.74, 0.5, 0.24] as const;
+const AXIS_LENGTH = 1.2;
+const HEAD = [0.26, 0.15] as const;
 
+/** See-through, so that the device in it is seen from everywhere. */
 export function makeCar(palette: Palette): Group {
   const car = new Group();
-  const body = extruded(BODY);
-  const skin = { color: palette.car, transparent: true, opacity: 0.32, depthWrite: false, side: DoubleSide };
-  car.add(new Mesh(body, new MeshStandardMaterial(skin)), edges(body, palette.edge));
-  for (const [x, y] of WHEELS) car.add(wheel(x, y, palette));
+  const skin = (opacity: number) =>
+    new MeshStandardMaterial({
+      color: palette.car,
+      transparent: true,
+      opacity,
+      depthWrite: false,
+      roughness: 0.9,
+    });
+  car.add(
+    new Mesh(extruded(BODY, WIDTH.body), skin(0.5)),
+    new Mesh(extruded(CABIN, WIDTH.cabin), skin(0.28)),
+  );
+  for (const x of [WHEEL.front, WHEEL.rear])
+    car.add(wheel(x, WHEEL.side, palette), wheel(x, -WHEEL.side, palette));
   return car;
 }
 
-/** The outline lies in the plane of x and z; it is drawn out along y. */
-function extruded(profile: Profile): BufferGeometry {
-  const shape = new Shape(profile.map(([x, z]) => new Vector3(x, z, 0) as never));
-  return new ExtrudeGeometry(shape, { depth: WIDTH, bevelEnabled: false })
+/** An outline drawn out along y. */
+function extruded(profile: Profile, width: number): BufferGeometry {
+  const shape = new Shape(profile.map(([x, z]) => new Vector2(x, z)));
+  const bevel = { bevelThickness: BEVEL, bevelSize: BEVEL / 2, bevelSegments: 5 };
+  return new ExtrudeGeometry(shape, { depth: width, ...bevel })
     .rotateX(Math.PI / 2)
-    .translate(0, WIDTH / 2, 0);
+    .translate(0, width / 2, 0);
 }
 
 function edges(geometry: BufferGeometry, color: string): LineSegments {
   return new LineSegments(new EdgesGeometry(geometry, 20), new LineBasicMaterial({ color }));
 }
 
-function wheel(x: number, y: number, palette: Palette): Group {
-  const group = new Group();
-  const tyre = new CylinderGeometry(0.33, 0.33, 0.2, 28);
-  group.add(new Mesh(tyre, new MeshStandardMaterial({ color: palette.edge })), edges(tyre, palette.ink));
-  group.position.set(x, y, 0.33);
-  return group;
+function wheel(x: number, y: number, palette: Palette): Mesh {
+  const tyre = new CylinderGeometry(WHEEL.radius, WHEEL.radius, WHEEL.width, 32);
+  const mesh = new Mesh(tyre, new MeshStandardMaterial({ color: palette.tyre, roughness: 1 }));
+  mesh.position.set(x, y, WHEEL.radius);
+  return mesh;
 }
 
 /** The device with its axes; its quaternion is q_vs. */
@@ -86,7 +107,15 @@ export function makeDevice(palette: Palette): Group {
     device.add(label("xyz"[i] ?? "", color, direction.clone().multiplyScalar(AXIS_LENGTH + 0.22), 0.34));
   });
   device.position.copy(DEVICE_AT);
+  device.traverse(drawLast);
   return device;
+}
+
+/** After the car's see-through skin, which would veil it. */
+function drawLast(part: Object3D): void {
+  if (!(part instanceof Mesh || part instanceof LineSegments)) return;
+  part.renderOrder = 1;
+  part.material.transparent = true;
 }
 
 /** Lines are one pixel wide on every screen; a thin rod is seen in sunlight. */
@@ -131,6 +160,6 @@ function label(text: string, color: string, position: Vector3, height: number): 
   const sprite = new Sprite(new SpriteMaterial({ map, depthTest: false, transparent: true }));
   sprite.position.copy(position);
   sprite.scale.set((height * canvas.width) / canvas.height, height, 1);
-  sprite.renderOrder = 1;
+  sprite.renderOrder = 2;
   return sprite;
 }

@@ -15,14 +15,14 @@ import { makeCar, makeDevice, makeDirections, type Palette } from "./car";
 
 export type ViewName = "corner" | "above" | "left" | "behind";
 
-/** Where the camera stands, metres in the vehicle frame. Straight above is taken a little off: there "up" is not unique. */
+/** Where the camera stands from its target, metres. Straight above is taken a little off: there "up" is not unique. */
 const CAMERAS: Record<ViewName, Vector3> = {
-  corner: new Vector3(-4.6, 4.4, 3.6),
-  above: new Vector3(-0.02, 0, 7.6),
-  left: new Vector3(0.35, 7.4, 0.95),
-  behind: new Vector3(-7.4, 0, 1.2),
+  corner: new Vector3(-4.7, 3.8, 2.9),
+  above: new Vector3(-0.01, 0, 7.4),
+  left: new Vector3(0, 7.2, 0.15),
+  behind: new Vector3(-7.4, 0, 0.8),
 };
-const TARGET = new Vector3(0.35, 0, 0.75);
+const TARGET = new Vector3(0.2, 0, 0.85);
 /** ms */
 const TURN = 500;
 
@@ -41,7 +41,7 @@ export class CarScene {
     palette: Palette,
     private readonly still: boolean,
   ) {
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.device = makeDevice(palette);
     this.fill(palette);
@@ -56,9 +56,9 @@ export class CarScene {
   private fill(palette: Palette): void {
     const sun = new DirectionalLight("#ffffff", 1.6);
     sun.position.set(-3, 4, 8);
-    const grid = new GridHelper(12, 12, palette.edge, palette.edge).rotateX(Math.PI / 2);
+    const grid = new GridHelper(12, 12, palette.line, palette.line).rotateX(Math.PI / 2);
     grid.material.transparent = true;
-    grid.material.opacity = 0.35;
+    grid.material.opacity = 0.6;
     const light = new HemisphereLight("#ffffff", "#8899aa", 1.6);
     this.scene.add(light, sun, grid, makeCar(palette), makeDirections(palette), this.device);
   }
@@ -96,7 +96,7 @@ export class CarScene {
   }
 
   look(view: ViewName): void {
-    this.camera.position.copy(CAMERAS[view]);
+    this.camera.position.copy(TARGET).add(CAMERAS[view]);
     this.controls.update();
     this.render();
   }
@@ -116,7 +116,7 @@ export class CarScene {
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
     // A narrow picture needs a wider angle to hold the whole car.
-    this.camera.fov = this.camera.aspect > 1.5 ? 34 : 42;
+    this.camera.fov = this.camera.aspect > 1.5 ? 36 : 44;
     this.camera.updateProjectionMatrix();
     this.render();
   }
