@@ -125,9 +125,9 @@ class SettlingParameters:
     """rad/s; STABLE when the average turns slower"""
     reliable_yaw_rate: float = 0.0
     """rad/s; RELIABLE when exceeded (thesis); 0 = RELIABLE is a statement about information, below"""
-    yaw_sigma: float = 2.0 * DEGREE
+    yaw_sigma: float = 1.6 * DEGREE
     """rad; RELIABLE below"""
-    tilt_sigma: float = 1.6 * DEGREE
+    tilt_sigma: float = 1.3 * DEGREE
     """rad; RELIABLE below"""
     excitation: float = 15.0
     """m2/s3, time integral of squared horizontal acceleration needed"""

@@ -84,7 +84,8 @@ def rotation_vector(q: ArrayLike) -> Floats:
 
 def angle_between(q: ArrayLike, p: ArrayLike) -> Floats:
     """Angle in [0, pi] of the rotation that takes `p` to `q`."""
-    return np.linalg.norm(rotation_vector(multiply(q, conjugate(p))), axis=-1)
+    angle: Floats = np.linalg.norm(rotation_vector(multiply(q, conjugate(p))), axis=-1)
+    return angle
 
 
 def rotate(q: ArrayLike, v: ArrayLike) -> Floats:

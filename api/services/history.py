@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 import core
 from api import schemas
-from api.services import presenting
 from storage import estimates
 from storage.database import ReadSession, WriteSession
+from storage.models import EPOCH, MICROSECOND, microseconds
 
 ROW = np.dtype(
     [
@@ -53,14 +53,21 @@ def read(
 ) -> schemas.Estimates:
     """Give at most `max_points` rows between two moments: the first, the last, changes of stage, and evenly between."""
     marks = estimates.marks(tx, device_pk, start, end)
-    found = estimates.blocks(tx, choose_blocks(marks, max_points))
-    parts = [np.frombuffer(block.rows, ROW) for block in found]
+    blocks = estimates.blocks(tx, choose_blocks(marks, max_points))
+    parts = [np.frombuffer(block.rows, ROW) for block in blocks]
     rows = np.concatenate([np.empty(0, ROW), *parts])
-    block = np.repeat(np.arange(len(parts)), [part.size for part in parts])
-    micros = np.array([block.started_at.timestamp() for block in found])[block] + rows["t"] if parts else rows["t"]
-    inside = np.flatnonzero((micros >= _seconds(start, -np.inf)) & (micros <= _seconds(end, np.inf)))
+    of_block = np.repeat(np.arange(len(parts)), [part.size for part in parts])
+    started_at = np.array([microseconds(block.started_at) for block in blocks], np.int64)
+    time = started_at[of_block] + np.rint(rows["t"] * 1e6).astype(np.int64)
+    inside = np.flatnonzero(_within(time, start, end))
     kept = inside[thin(rows["stage"][inside], max_points)]
-    return _columns(rows[kept], [found[i] for i in block[kept]])
+    return _columns([blocks[i].session for i in of_block[kept]], time[kept], rows[kept])
+
+
+def _within(time: NDArray[np.int64], start: datetime | None, end: datetime | None) -> NDArray[np.bool_]:
+    after = True if start is None else time >= microseconds(start)
+    before = True if end is None else time <= microseconds(end)
+    return np.full(time.shape, True) & after & before
 
 
 def choose_blocks(marks: Sequence[estimates.Mark], max_points: int) -> list[int]:
@@ -86,19 +93,15 @@ def _evenly(n: int, count: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(0, n - 1, count).round().astype(np.int64))
 
 
-def _seconds(moment: datetime | None, otherwise: float) -> float:
-    return otherwise if moment is None else moment.timestamp()
-
-
-def _columns(rows: Rows, blocks: list[estimates.Block]) -> schemas.Estimates:
+def _columns(session: list[str], time: NDArray[np.int64], rows: Rows) -> schemas.Estimates:
     quaternion = core.quaternion.normalise(rows["quaternion"])
     angles = np.degrees([core.quaternion.angles(q) for q in quaternion]).reshape(-1, 3).round(6).T.tolist()
     stages = {stage.value: stage.word for stage in core.Stage}
     return schemas.Estimates.model_validate(
         {
-            "session": [block.session for block in blocks],
+            "session": session,
             "t": rows["t"].tolist(),
-            "time": [presenting.utc(b.started_at, t) for b, t in zip(blocks, rows["t"].tolist(), strict=True)],
+            "time": [EPOCH + us * MICROSECOND for us in time.tolist()],
             "quaternion": quaternion.round(8).tolist(),
             "angles_deg": dict(zip(("roll", "pitch", "yaw"), angles, strict=True)),
             "sigma_deg": np.degrees(rows["sigma"].astype(np.float64)).round(6).tolist(),
