@@ -1,6 +1,6 @@
 """Alerts. One open alert per device and kind: a recurrence raises its count."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
@@ -71,15 +71,15 @@ def find_open(tx: ReadSession, device_pk: int, kinds: Sequence[str]) -> list[Ale
 
 def page(tx: ReadSession, limit: int, before: int | None, wanted: Filter) -> list[Alert]:
     """Give up to `limit` alerts, newest first, from before number `before`."""
-    conditions = {
-        "state": alerts.c.state == wanted.state,
-        "kind": alerts.c.kind == wanted.kind,
-        "severity": alerts.c.severity == wanted.severity,
-        "device_id": devices.c.id == wanted.device_id,
-        "since": alerts.c.opened_at >= wanted.since,
-        "until": alerts.c.opened_at < wanted.until,
+    compare: dict[str, Callable[[Any], sa.ColumnElement[bool]]] = {
+        "state": alerts.c.state.__eq__,
+        "kind": alerts.c.kind.__eq__,
+        "severity": alerts.c.severity.__eq__,
+        "device_id": devices.c.id.__eq__,
+        "since": alerts.c.opened_at.__ge__,
+        "until": alerts.c.opened_at.__lt__,
     }
-    chosen = [conditions[name] for name, value in wanted._asdict().items() if value is not None]
+    chosen = [compare[name](value) for name, value in wanted._asdict().items() if value is not None]
     statement = _select.where(*chosen).order_by(alerts.c.pk.desc()).limit(limit)
     return tx.all(Alert, statement if before is None else statement.where(alerts.c.pk < before))
 

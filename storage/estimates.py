@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import estimates, sessions
+from storage.models import estimates, microseconds, sessions
 
 
 class Mark(NamedTuple):
@@ -49,17 +49,17 @@ def add(
     )
 
 
+SLACK = 1_000_000
+"""us added to a period when blocks are looked for, so that rounding loses none"""
+
+
 def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[Any]:
-    """Time of a column on the session's clock, in microseconds UTC."""
+    """Time of a column on the session's clock, us since 1970."""
     return sa.type_coerce(sessions.c.started_at, sa.BigInteger) + column * 1e6
 
 
-def _instant(moment: datetime) -> sa.ColumnElement[Any]:
-    return sa.type_coerce(sa.literal(moment, sessions.c.started_at.type), sa.BigInteger)
-
-
 def marks(tx: ReadSession, device_pk: int, start: datetime | None, end: datetime | None) -> list[Mark]:
-    """Give the marks of the blocks that overlap [start, end], in time order."""
+    """Give the marks of the blocks that overlap [start, end], and perhaps their neighbours, in time order."""
     statement = (
         sa.select(estimates.c.pk, estimates.c.size, estimates.c.changes)
         .join_from(estimates, sessions)
@@ -67,9 +67,9 @@ def marks(tx: ReadSession, device_pk: int, start: datetime | None, end: datetime
         .order_by(estimates.c.pk)
     )
     if start is not None:
-        statement = statement.where(_utc(estimates.c.t_last) >= _instant(start))
+        statement = statement.where(_utc(estimates.c.t_last) >= microseconds(start) - SLACK)
     if end is not None:
-        statement = statement.where(_utc(estimates.c.t_first) <= _instant(end))
+        statement = statement.where(_utc(estimates.c.t_first) <= microseconds(end) + SLACK)
     return tx.all(Mark, statement)
 
 

@@ -1,0 +1,85 @@
+"""The service as a process of its own, which can be stopped and killed."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+
+from tests.service import ADMIN_KEY, Api
+
+ROOT = Path(__file__).parent.parent
+START_SECONDS = 90.0
+
+
+class ServerProcess:
+    """A server on a port of its own; the port stays the same when it is started again."""
+
+    def __init__(self, database_url: str, directory: Path, workers: int = 1, **settings: str) -> None:
+        with socket.socket() as listener:
+            listener.bind(("127.0.0.1", 0))
+            self.port = int(listener.getsockname()[1])
+        self.url = f"http://127.0.0.1:{self.port}"
+        self.workers = workers
+        self.log = directory / "server.log"
+        self.environment = os.environ | {
+            "LIVELLA_DATABASE_URL": database_url,
+            "LIVELLA_ADMIN_KEY": ADMIN_KEY,
+            **{f"LIVELLA_{name.upper()}": value for name, value in settings.items()},
+        }
+        self.process: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> None:
+        """Start without waiting."""
+        command = [sys.executable, "-m", "uvicorn", "--factory", "api.app:create_app", "--port", str(self.port)]
+        command += ["--no-access-log", "--workers", str(self.workers)]
+        with self.log.open("ab") as log:
+            self.process = subprocess.Popen(
+                command, cwd=ROOT, env=self.environment, stdout=log, stderr=log, start_new_session=True
+            )
+
+    def wait_until_ready(self) -> None:
+        deadline = time.monotonic() + START_SECONDS
+        while True:
+            assert self.process is not None
+            assert self.process.poll() is None, self.log.read_text()
+            assert time.monotonic() < deadline, self.log.read_text()
+            try:
+                if httpx.get(f"{self.url}/readyz", timeout=1.0).status_code == 200:
+                    return
+            except httpx.TransportError:
+                pass
+            time.sleep(0.02)
+
+    def kill(self) -> None:
+        """End it with no chance to tidy up."""
+        assert self.process is not None
+        os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+
+    def stop(self, seconds: float = 15.0) -> float:
+        """Ask it to end; give the seconds that took."""
+        assert self.process is not None
+        begun = time.monotonic()
+        self.process.terminate()
+        self.process.wait(seconds)
+        return time.monotonic() - begun
+
+
+@contextmanager
+def running(server: ServerProcess) -> Iterator[Api]:
+    """Start a server and end it; give it for an administrator."""
+    server.start()
+    try:
+        server.wait_until_ready()
+        with httpx.Client(base_url=server.url, timeout=20.0) as client:
+            yield Api(client)
+    finally:
+        if server.process is not None and server.process.poll() is None:
+            server.kill()
