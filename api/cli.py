@@ -13,6 +13,13 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
+db = typer.Typer(help="Bring the database up to date, back it up, restore it.", no_args_is_help=True)
+app.add_typer(db, name="db")
+
+DatabaseUrl = Annotated[
+    str | None, typer.Option(help="postgresql://... or sqlite:///... [default: a SQLite file in the data directory]")
+]
+DataDir = Annotated[Path | None, typer.Option(help="Directory for the data. [default: data]")]
 LogFormat = Annotated[
     Literal["csv", "thesis", "arrow"] | None,
     typer.Option("--format", help="Format of the log; found out if not given."),
@@ -27,11 +34,8 @@ def serve(
     host: Annotated[str | None, typer.Option(help="Address to listen on. [default: 127.0.0.1]")] = None,
     port: Annotated[int | None, typer.Option(help="TCP port. [default: 8000]")] = None,
     workers: Annotated[int | None, typer.Option(help="Server processes. [default: 1]")] = None,
-    database_url: Annotated[
-        str | None,
-        typer.Option(help="postgresql://... or sqlite:///... [default: a SQLite file in the data directory]"),
-    ] = None,
-    data_dir: Annotated[Path | None, typer.Option(help="Directory for the data. [default: data]")] = None,
+    database_url: DatabaseUrl = None,
+    data_dir: DataDir = None,
 ) -> None:
     """Migrate the database, then run the service and the page. Settings not given come from the environment."""
     from api.commands import serve as command
@@ -120,6 +124,50 @@ def demo(port: Annotated[int, typer.Option(min=1, max=65535, help="TCP port.")] 
     from api.commands import demo as command
 
     command.run(port)
+
+
+@db.command("migrate")
+def db_migrate(database_url: DatabaseUrl = None, data_dir: DataDir = None) -> None:
+    """Apply the migrations that are missing; `livella serve` does so by itself."""
+    from api.commands import db as command
+
+    command.migrate({"database_url": database_url, "data_dir": data_dir})
+
+
+@db.command("backup")
+def db_backup(
+    out: Annotated[Path, typer.Argument(help="File to write.", show_default=False)],
+    database_url: DatabaseUrl = None,
+    data_dir: DataDir = None,
+) -> None:
+    """Write a consistent copy of the database to a file, also while the service runs."""
+    from api.commands import db as command
+
+    command.backup({"database_url": database_url, "data_dir": data_dir}, out)
+
+
+@db.command("restore")
+def db_restore(
+    source: Annotated[Path, typer.Argument(help="File made by `livella db backup`.", show_default=False)],
+    replace: Annotated[bool, typer.Option("--replace", help="Give up what is in the database now.")] = False,
+    database_url: DatabaseUrl = None,
+    data_dir: DataDir = None,
+) -> None:
+    """Put a backup in the place of the database. Stop the service before."""
+    from api.commands import db as command
+
+    command.restore({"database_url": database_url, "data_dir": data_dir}, source, replace)
+
+
+@app.command()
+def openapi() -> None:
+    """Print the OpenAPI document."""
+    import json
+
+    from api.app import create_app
+    from api.settings import Settings
+
+    typer.echo(json.dumps(create_app(Settings()).openapi(), indent=2))
 
 
 def main() -> None:

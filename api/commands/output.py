@@ -15,6 +15,7 @@ FAILED = 1
 UNREADABLE = 2
 """exit status when a file or an argument cannot be used"""
 
+ANGLES = ("roll", "pitch", "yaw")
 PIPE_WIDTH = 160
 """columns of a table that goes into a file or another program"""
 
@@ -50,9 +51,7 @@ def progress() -> Progress:
     )
 
 
-def angles(quaternion: Iterable[float], sigma_deg: Iterable[float]) -> str:
-    """Give a mounting for people, such as "roll 1.2 +- 0.3, pitch ... deg"."""
+def angles(quaternion: Iterable[float], sigma_deg: Iterable[float]) -> list[str]:
+    """Give roll, pitch and yaw of a mounting for people, each such as "-1.2 ± 0.3", degrees."""
     degrees = np.degrees(core.quaternion.angles(list(quaternion)))
-    names = ("roll", "pitch", "yaw")
-    parts = [f"{name} {a:.1f} ± {s:.1f}" for name, a, s in zip(names, degrees, sigma_deg, strict=True)]
-    return ", ".join(parts) + " deg"
+    return [f"{angle:.1f} ± {sigma:.1f}" for angle, sigma in zip(degrees, sigma_deg, strict=True)]

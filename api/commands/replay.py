@@ -13,6 +13,7 @@ from rich.table import Table
 
 import core
 from api.commands import output
+from api.commands.output import ANGLES
 from api.formats import FormatError, Reading, Sense
 from api.formats.files import Format, open_log
 from api.services import presenting
@@ -177,7 +178,7 @@ def _with_angles(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def _table(results: list[Result]) -> Table:
-    table = Table("file", "minutes", "samples", "fixes", "rejected", "stage", "mounting, or estimate in brackets")
+    table = Table("file", "minutes", "samples", "fixes", "rejected", "stage", "result", *(f"{a}, deg" for a in ANGLES))
     for result in results:
         table.add_row(
             str(result.file),
@@ -186,16 +187,15 @@ def _table(results: list[Result]) -> Table:
             str(result.fixes),
             ", ".join(f"{reason} {count}" for reason, count in result.rejected.items()),
             result.status.stage.word,
-            _found(result.status),
+            *_found(result.status),
         )
     return table
 
 
-def _found(status: Status) -> str:
+def _found(status: Status) -> list[str]:
+    """Say what was found, with its angles."""
     known = status.mount or status.estimate
     if known is None:
-        return "none yet; needs " + ", ".join(status.needs.words)
-    text = output.angles(known.quaternion, presenting.degrees(known.sigma))
-    if status.mount is None:
-        return f"({text})"
-    return f"{text}, suspect" if status.mount.suspect else text
+        return ["nothing yet; needs " + ", ".join(status.needs.words)]
+    name = "estimate" if status.mount is None else "mount, suspect" if status.mount.suspect else "mount"
+    return [name, *output.angles(known.quaternion, presenting.degrees(known.sigma))]

@@ -100,7 +100,9 @@ def _report(answer: dict[str, Any], duplicates: int) -> None:
     for title in ("mount", "estimate"):
         known = installation[title]
         if known:
-            lines.append(f"{title}: {output.angles(known['quaternion'], known['sigma_deg'])}")
+            angles = output.angles(known["quaternion"], known["sigma_deg"])
+            parts = [f"{name} {angle}" for name, angle in zip(output.ANGLES, angles, strict=True)]
+            lines.append(f"{title}: {', '.join(parts)} deg")
     for line in lines:
         _print(line)
 
