@@ -39,8 +39,9 @@ def run(port: int) -> None:
                 timeout_graceful_shutdown=GRACE,
             )
         )
-        with _playing(f"http://{HOST}:{port}", key):
-            server.run()
+        listener = server.config.bind_socket()  # before the fleet starts: whoever else has the port ends us here
+        with listener, _playing(f"http://{HOST}:{port}", key):
+            server.run([listener])
 
 
 @contextmanager
