@@ -1,0 +1,1 @@
+"""The experiments of thesis chapter 5, run on simulated drives."""
