@@ -56,7 +56,7 @@ def test_a_port_that_is_taken() -> None:
         taken.listen()
         before = left_behind()
         done = livella.run("demo", "--port", taken.getsockname()[1])
-    assert done.status == 1
+    assert done.status != 0
     assert "address already in use" in done.err.lower()
     assert left_behind() == before
 
