@@ -33,6 +33,11 @@ def case(route: str, seconds: float, mount: Angles, seed: int = SEED) -> Drive:
     return simulate(replace(BASE, route=route, seconds=seconds, mount=from_thesis(mount), seed=seed))
 
 
+def beginning(drive: Drive, seconds: float) -> Drive:
+    """The first seconds of a drive."""
+    return Drive(drive.samples.slice(0, int(np.searchsorted(drive.samples.t, seconds))), drive.truth)
+
+
 def traces(drive: Drive) -> dict[str, Trace]:
     """Run both presets."""
     return {name: trace(params, drive) for name, params in PRESETS.items()}
