@@ -1,10 +1,10 @@
-import { BellOff, CircleAlert, Info, TriangleAlert } from "lucide-react";
+import { CircleAlert, Info, TriangleAlert } from "lucide-react";
 import { useDeviceAlerts } from "../api/queries";
 import { useMay } from "../api/session";
 import type { Alert } from "../api/types";
 import { ClockTime } from "../components/RelativeTime";
 import { Section } from "../components/Section";
-import { Empty, Failed, Loading } from "../components/States";
+import { Failed, Loading } from "../components/States";
 import { Notice } from "../components/Tone";
 import type { Tone } from "../lib/stages";
 import css from "./device.module.css";
@@ -37,7 +37,7 @@ function Count({ open }: { open: number }) {
 }
 
 function Nothing() {
-  return <Empty icon={BellOff} title="No alerts" />;
+  return <p className={css.quiet}>None.</p>;
 }
 
 function Alerts({ id }: { id: string }) {

@@ -54,14 +54,14 @@ function Content({ name, device, installation }: ContentProps) {
           <div className={css.side}>
             <VerificationSection verification={installation.verification} stage={installation.stage} />
             <UncertaintySection shown={shown} />
+            <MountsSection id={id} />
           </div>
         </div>
         <HistorySection id={id} lastData={installation.last_data_at} />
         <div className={css.halves}>
           <AlertsSection id={id} open={installation.open_alerts} />
-          <MountsSection id={id} />
+          {shown && <NumbersSection shown={shown} />}
         </div>
-        {shown && <NumbersSection shown={shown} />}
       </div>
       <Record name={name} device={device} installation={installation} />
     </>

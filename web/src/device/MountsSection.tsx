@@ -1,9 +1,8 @@
-import { History } from "lucide-react";
 import { useMounts } from "../api/queries";
 import type { Mount } from "../api/types";
 import { ClockTime } from "../components/RelativeTime";
 import { Section } from "../components/Section";
-import { Empty, Failed, Loading } from "../components/States";
+import { Failed, Loading } from "../components/States";
 import { Pill } from "../components/Tone";
 import { fixed } from "../lib/format";
 import type { Tone } from "../lib/stages";
@@ -22,7 +21,7 @@ export function MountsSection({ id }: { id: string }) {
     <Section title="Confirmed mountings">
       {mounts.isPending && <Loading what="the mountings" />}
       {mounts.isError && <Failed what="the mountings" error={mounts.error} retry={mounts.refetch} />}
-      {mounts.data?.items.length === 0 && <Empty icon={History} title="None so far" />}
+      {mounts.data?.items.length === 0 && <p className={css.quiet}>None so far.</p>}
       <ol className={css.mounts} reversed>
         {mounts.data?.items.map((mount) => (
           <li key={mount.id}>

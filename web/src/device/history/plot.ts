@@ -40,7 +40,12 @@ export function plotOptions(settings: PlotSettings): uPlot.Options {
     scales: { x: { time: true } },
     padding: [6, 12, 6, 0],
     axes: [
-      { ...axis, size: axisHeight, space: 70, values: (_, ticks, __, ___, step) => timeTexts(ticks, step) },
+      {
+        ...axis,
+        size: axisHeight,
+        space: 70,
+        values: (_, ticks, __, ___, step) => (axisHeight ? timeTexts(ticks, step) : ticks.map(() => "")),
+      },
       { ...axis, size: 52, space: 24, values: (_, ticks) => ticks.map(tickText) },
     ],
     series: [{}, { stroke: colour, width: 2, points: { show: false } }, edge, edge],
