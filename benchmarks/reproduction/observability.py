@@ -51,7 +51,7 @@ mounting.
 The print sees the eigenvalue near n while parked and smaller in curves. With table 5.1 it does not measure what it is
 meant to: the eigenvector is always the forward acceleration (its component is above 0.98 throughout), whose process
 noise, sigma_a² = 10, outweighs everything else. The stated sigma misleads as well: it is smallest on the straight road,
-where the estimate is wrong (below), and largest in curves, where it is right, because only there the gate of (4.63)
+where the estimate is wrong (below), and largest in curves, where it is right, because there the gate of (4.63)
 adds noise to the mounting. `default` states no mounting while parked, and its sigma falls with braking and turning."""
 
 
