@@ -14,7 +14,9 @@ app = typer.Typer(
 )
 
 db = typer.Typer(help="Bring the database up to date, back it up, restore it.", no_args_is_help=True)
+keys = typer.Typer(help="Administer the keys, on the service's own machine.", no_args_is_help=True)
 app.add_typer(db, name="db")
+app.add_typer(keys, name="keys")
 
 DatabaseUrl = Annotated[
     str | None, typer.Option(help="postgresql://... or sqlite:///... [default: a SQLite file in the data directory]")
@@ -124,6 +126,42 @@ def demo(port: Annotated[int, typer.Option(min=1, max=65535, help="TCP port.")] 
     from api.commands import demo as command
 
     command.run(port)
+
+
+@keys.command("list")
+def keys_list(database_url: DatabaseUrl = None, data_dir: DataDir = None) -> None:
+    """List the keys; what they open, not the keys themselves, which are not stored."""
+    from api.commands import keys as command
+
+    command.show({"database_url": database_url, "data_dir": data_dir})
+
+
+@keys.command("create")
+def keys_create(
+    role: Annotated[Literal["device", "installer", "manager", "admin"], typer.Option(show_default=False)],
+    name: Annotated[str, typer.Option(help="Whose it is, for the list.", show_default=False)] = "",
+    device: Annotated[
+        str | None, typer.Option(help="With the role device: the device it is for.", show_default=False)
+    ] = None,
+    database_url: DatabaseUrl = None,
+    data_dir: DataDir = None,
+) -> None:
+    """Make a key and print it, once."""
+    from api.commands import keys as command
+
+    command.create({"database_url": database_url, "data_dir": data_dir}, role, name, device)
+
+
+@keys.command("revoke")
+def keys_revoke(
+    number: Annotated[int, typer.Argument(help="Number of the key in the list.", show_default=False)],
+    database_url: DatabaseUrl = None,
+    data_dir: DataDir = None,
+) -> None:
+    """Revoke a key; whoever signed in with it is signed out."""
+    from api.commands import keys as command
+
+    command.revoke({"database_url": database_url, "data_dir": data_dir}, number)
 
 
 @db.command("migrate")

@@ -35,6 +35,11 @@ def by_pk(tx: ReadSession, pk: int) -> Key | None:
     return tx.one(Key, _select.where(api_keys.c.pk == pk))
 
 
+def every(tx: ReadSession) -> list[Key]:
+    """List the keys in the order in which they were made."""
+    return tx.all(Key, _select.order_by(api_keys.c.pk))
+
+
 def add(
     tx: WriteSession,
     digest: bytes,

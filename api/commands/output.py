@@ -7,6 +7,8 @@ import numpy as np
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+from rich.text import Text
 
 import core
 
@@ -31,6 +33,14 @@ def complain(message: str) -> None:
     typer.echo(message, err=True)
 
 
+def print_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
+    """Print a table; its cells are taken as they are, also with brackets in them."""
+    table = Table(*heads)
+    for row in rows:
+        table.add_row(*map(Text, row))
+    stdout().print(table)
+
+
 def stdout() -> Console:
     """Give the console for results."""
     console = Console()
@@ -41,7 +51,7 @@ def progress() -> Progress:
     """Give a progress bar on stderr, shown on a terminal only; its total is in seconds of log time."""
     console = Console(stderr=True)
     return Progress(
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn("{task.completed:.0f}/{task.total:.0f} s"),
         TimeRemainingColumn(),

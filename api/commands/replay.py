@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import typer
-from rich.table import Table
 
 import core
 from api.commands import output
@@ -21,6 +20,8 @@ from core import PRESETS, Event, Outcome, Parameters, Samples, Status
 
 PIECE = 60.0
 """s of log time given to the estimator at once"""
+
+HEADS = ("file", "minutes", "samples", "fixes", "rejected", "stage", "result", *(f"{angle}, deg" for angle in ANGLES))
 
 
 class Result(NamedTuple):
@@ -65,7 +66,7 @@ def run(logs: list[Path], log_format: Format | None, preset: str, every: float, 
         if as_json:
             typer.echo(json.dumps(_summary(results[-1]), allow_nan=False))
     if results and not as_json:
-        output.stdout().print(_table(results))
+        output.print_table(HEADS, map(_row, results))
     if len(results) < len(logs):
         raise typer.Exit(output.UNREADABLE)
 
@@ -177,19 +178,16 @@ def _with_angles(document: dict[str, Any]) -> dict[str, Any]:
     return document | presenting.rotation(document["quaternion"])
 
 
-def _table(results: list[Result]) -> Table:
-    table = Table("file", "minutes", "samples", "fixes", "rejected", "stage", "result", *(f"{a}, deg" for a in ANGLES))
-    for result in results:
-        table.add_row(
-            str(result.file),
-            f"{result.duration / 60:.1f}",
-            str(result.samples),
-            str(result.fixes),
-            ", ".join(f"{reason} {count}" for reason, count in result.rejected.items()),
-            result.status.stage.word,
-            *_found(result.status),
-        )
-    return table
+def _row(result: Result) -> list[str]:
+    return [
+        str(result.file),
+        f"{result.duration / 60:.1f}",
+        str(result.samples),
+        str(result.fixes),
+        ", ".join(f"{reason} {count}" for reason, count in result.rejected.items()),
+        result.status.stage.word,
+        *_found(result.status),
+    ]
 
 
 def _found(status: Status) -> list[str]:
