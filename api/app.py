@@ -49,7 +49,7 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
     errors.install(app)
     app.include_router(service.router)
     app.include_router(api)
-    app.router.default = page.Page(app.router.default)
+    app.router.default = page.Page(app.router.default, page.STATIC)
     app.add_middleware(headers.SecurityHeaders)
     _describe(app)
     return app

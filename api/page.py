@@ -15,7 +15,7 @@ NOT_BUILT = "The page is not built: run `make setup`. The API is at /api/v1 and 
 class Page:
     """Answers what no route answers: a file of the page, or its start, which finds its own way from the address."""
 
-    def __init__(self, otherwise: ASGIApp, directory: Path = STATIC) -> None:
+    def __init__(self, otherwise: ASGIApp, directory: Path) -> None:
         self.otherwise = otherwise
         self.files = StaticFiles(directory=directory, check_dir=False)
         self.start = directory / "index.html"

@@ -51,7 +51,7 @@ def readiness(request: Request, response: Response, context: CurrentContext) -> 
 @router.get("/docs", include_in_schema=False)
 def docs() -> Response:
     """Describe the API for people, without any other server's help."""
-    return HTMLResponse(DOCS) if SWAGGER.is_dir() else PlainTextResponse(NOT_BUILT)
+    return HTMLResponse(DOCS) if SWAGGER.is_dir() else PlainTextResponse(NOT_BUILT, 404)
 
 
 @router.get("/docs/start.js", include_in_schema=False)

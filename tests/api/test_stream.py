@@ -101,7 +101,11 @@ def test_the_stream_tells_what_happens_and_resumes_where_it_broke_off(live: Api,
     device.send(chunks()[2], 2, expect=202)  # nor does a chunk that waits
     live.call("PATCH", "/devices/before", 200, json={"name": "new"})
     registered, installed, edited = listener.wait_for(3)
-    assert (registered.type, registered.data["change"], registered.data["device"]["id"]) == ("device", "registered", "box")
+    assert (registered.type, registered.data["change"], registered.data["device"]["id"]) == (
+        "device",
+        "registered",
+        "box",
+    )
     assert (installed.type, installed.data) == ("installation", answer["installation"])
     assert (edited.data["change"], edited.data["device"]["name"]) == ("edited", "new")
     listener.leave()
@@ -160,9 +164,7 @@ def test_another_process_is_heard(database_url: str, tmp_path: Path) -> None:
         assert len({t.id for t in told}) == 20
 
 
-def test_a_stream_that_cannot_be_resumed_says_so(
-    database_url: str, tmp_path: Path, database: Database
-) -> None:
+def test_a_stream_that_cannot_be_resumed_says_so(database_url: str, tmp_path: Path, database: Database) -> None:
     with running(ServerProcess(database_url, tmp_path)) as api:
         listener = Listener(api)
         api.add_device("a")

@@ -1,0 +1,98 @@
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+import sqlalchemy as sa
+from alembic import command
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
+
+from storage.database import Database
+from storage.migrate import config, upgrade
+from storage.models import metadata
+from tests.postgres import Server
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def empty_url(backend: str, request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    if backend == "sqlite":
+        return f"sqlite:///{tmp_path / 'livella.db'}"
+    server: Server = request.getfixturevalue("postgres")
+    return server.empty_database()
+
+
+def tables(database: Database) -> set[str]:
+    with database.read() as tx:
+        return set(sa.inspect(tx.connection).get_table_names())
+
+
+def test_the_migrations_make_the_tables_of_the_models(empty_url: str) -> None:
+    database = Database(empty_url)
+    upgrade(database)
+    assert tables(database) == {*metadata.tables, "alembic_version"}
+    with database.read() as tx:
+        differences = compare_metadata(MigrationContext.configure(tx.connection, {"compare_type": True}), metadata)
+    assert differences == []
+    upgrade(database)
+    database.close()
+
+
+def test_the_migrations_can_be_undone(empty_url: str) -> None:
+    database = Database(empty_url)
+    upgrade(database)
+    with database.write() as tx:
+        command.downgrade(config(tx.connection), "base")
+    assert tables(database) == {"alembic_version"}
+    upgrade(database)
+    assert tables(database) == {*metadata.tables, "alembic_version"}
+    database.close()
+
+
+def test_there_is_one_newest_migration() -> None:
+    assert len(ScriptDirectory.from_config(config()).get_heads()) == 1
+
+
+def test_several_may_migrate_at_once(empty_url: str) -> None:
+    databases = [Database(empty_url) for _ in range(6)]
+    failures: list[Exception] = []
+
+    def migrate(database: Database) -> None:
+        try:
+            upgrade(database)
+        except Exception as error:  # noqa: BLE001 - any failure counts
+            failures.append(error)
+
+    threads = [threading.Thread(target=migrate, args=(database,)) for database in databases]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert failures == []
+    assert tables(databases[0]) == {*metadata.tables, "alembic_version"}
+    for database in databases:
+        database.close()
+
+
+PREPARE = """
+from api.services import startup
+from api.services.context import Context
+from api.settings import Settings
+print(startup.prepare(Context.make(Settings())))
+"""
+
+
+def test_of_processes_that_start_at_once_one_shows_the_admin_key(empty_url: str, tmp_path: Path) -> None:
+    environment = {"LIVELLA_DATABASE_URL": empty_url, "LIVELLA_DATA_DIR": str(tmp_path), "PATH": ""}
+    starts = [
+        subprocess.Popen([sys.executable, "-c", PREPARE], cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True)
+        for _ in range(3)
+    ]
+    shown = [start.communicate(timeout=120)[0].strip() for start in starts]
+    assert [start.returncode for start in starts] == [0, 0, 0]
+    assert sorted(shown)[:2] == ["None", "None"]
+    assert sorted(shown)[2].startswith("livella_")
