@@ -917,7 +917,8 @@ def settle(p, s, m, a, e, sigma):
     """STABLE and RELIABLE."""
     s["stable"] = move_average(p, s, m["q_vs"], e["period"]) < p["settling_stable_rate"]
     if p["settling_reliable_yaw_rate"] > 0:
-        s["reliable"] = s["reliable"] or abs(e["yaw_rate"]) > p["settling_reliable_yaw_rate"]
+        turning = e["moving"] and abs(e["yaw_rate"]) > p["settling_reliable_yaw_rate"]
+        s["reliable"] = s["reliable"] or turning
         s["agrees"] = True
         return
     s["agrees"] = second_opinion(p, m, a)

@@ -1,9 +1,9 @@
 """Simulated drives shared by the tests of core, made once; slow sampling so that the uncompiled kernel keeps up."""
 
 import dataclasses
+import os
 from functools import cache
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,7 +13,8 @@ from core.simulation import Drive, Scenario, simulate
 
 Floats = NDArray[np.float64]
 
-RATE = 10.0 if numba.config.DISABLE_JIT else 50.0
+UNCOMPILED = os.environ.get("NUMBA_DISABLE_JIT") == "1"
+RATE = 10.0 if UNCOMPILED else 50.0
 """Hz; the uncompiled kernel, run to see its coverage, is three hundred times slower"""
 SCENARIOS = {
     "city": Scenario(route="city", seconds=400.0, seed=3, imu_rate=RATE, sensor="mems"),

@@ -12,7 +12,9 @@ from tests.core.drives import drive, remounted, run
 
 
 def in_pieces(params: Parameters, samples: Samples, cuts: list[int]) -> tuple[State, list[np.ndarray], list[Event]]:
-    state, history, events = initial_state(params), [], []
+    state = initial_state(params)
+    history: list[np.ndarray] = []
+    events: list[Event] = []
     edges = [0, *sorted(cuts), len(samples)]
     for start, stop in pairwise(edges):
         state, outcome = advance(params, decode(encode(state)), samples.slice(start, stop))
