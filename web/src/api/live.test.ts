@@ -118,6 +118,15 @@ describe("an installation event", () => {
     expect(soon).toHaveBeenCalledWith(keys.mounts("a"));
   });
 
+  it("reads the mountings again when the time of the last one is known better", () => {
+    const mount = (time: string) =>
+      ({ id: 1, status: "in_force", confirmed_at: time }) as Installation["mount"];
+    client.setQueryData(keys.installation("a"), installation({ mount: mount("2025-11-22T10:02:00Z") }));
+    const told = installation({ mount: mount("2025-11-22T10:00:00Z"), revision: 8 });
+    apply(client, { type: "installation", data: told }, soon);
+    expect(soon).toHaveBeenCalledWith(keys.mounts("a"));
+  });
+
   it("does not fill the cache with devices that nobody looks at", () => {
     apply(client, { type: "installation", data: installation({ device_id: "z" }) }, soon);
     expect(client.getQueryData(keys.installation("z"))).toBeUndefined();

@@ -33,7 +33,13 @@ export function withAlert(page: Page<Alert>, told: Alert): Page<Alert> {
   return Date.parse(known.updated_at) > Date.parse(told.updated_at) ? page : replaced(page, told);
 }
 
-/** Does this event say that there is another confirmed mounting, or another verdict on the one there is? */
+/**
+ * Does this event say that there is another confirmed mounting, or something else of the one there is? Its time is one such
+ * thing: the service learns the zero of a device's clock better with every chunk.
+ */
 export function mountChanged(known: Installation, told: Installation): boolean {
-  return known.mount?.id !== told.mount?.id || known.mount?.status !== told.mount?.status;
+  const [before, now] = [known.mount, told.mount];
+  return (
+    before?.id !== now?.id || before?.status !== now?.status || before?.confirmed_at !== now?.confirmed_at
+  );
 }

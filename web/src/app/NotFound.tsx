@@ -6,7 +6,7 @@ import { Empty } from "../components/States";
 export function NotFound({ what }: { what: string }) {
   return (
     <div className="card">
-      <Empty icon={MapPinOff} title={`${what} does not exist`}>
+      <Empty icon={MapPinOff} as="h1" title={`${what} does not exist`}>
         <Anchor component={Link} href="/devices">
           To the list of devices
         </Anchor>

@@ -41,14 +41,14 @@ export const theme = createTheme({
   components: {
     Button: { defaultProps: { size: "md" } },
     ActionIcon: { defaultProps: { size: 44, variant: "subtle" } },
-    SegmentedControl: { defaultProps: { size: "md" } },
     TextInput: { defaultProps: { size: "md" } },
     Textarea: { defaultProps: { size: "md" } },
     PasswordInput: { defaultProps: { size: "md" } },
-    // lockScroll would write a <style>; base.css does the same.
+    // lockScroll would write a <style>; base.css does the same. A dialog's header is no banner of the page.
     Modal: {
       defaultProps: {
         lockScroll: false,
+        attributes: { header: { role: "presentation" } },
         centered: true,
         radius: "lg",
         closeButtonProps: { "aria-label": "Close" },

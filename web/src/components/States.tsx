@@ -21,14 +21,16 @@ export function Loading({ what, lines = 3 }: { what: string; lines?: number }) {
 interface EmptyProps {
   icon: LucideIcon;
   title: string;
+  /** h1 where this is all there is on the page */
+  as?: "p" | "h1";
   children?: ReactNode;
 }
 
-export function Empty({ icon: Icon, title, children }: EmptyProps) {
+export function Empty({ icon: Icon, title, as: Title = "p", children }: EmptyProps) {
   return (
     <div className={css.empty}>
       <Icon size={36} strokeWidth={1.5} aria-hidden />
-      <p className={css.emptyTitle}>{title}</p>
+      <Title className={css.emptyTitle}>{title}</Title>
       {children}
     </div>
   );

@@ -29,7 +29,7 @@ export function Notice({ tone, icon: Icon, title, children, role }: NoticeProps)
     <div className={classes(css.notice, css[tone])} role={role}>
       <Icon size={22} aria-hidden />
       <div>
-        <h3>{title}</h3>
+        <strong>{title}</strong>
         {children}
       </div>
     </div>
