@@ -1,10 +1,11 @@
 """What commands write to the terminal: errors and progress to stderr, results to stdout."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import NoReturn
 
 import numpy as np
 import typer
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
@@ -33,9 +34,11 @@ def complain(message: str) -> None:
     typer.echo(message, err=True)
 
 
-def print_table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
-    """Print a table; its cells are taken as they are, also with brackets in them."""
-    table = Table(*heads)
+def print_table(heads: Iterable[str], rows: Iterable[Iterable[str]], folded: Collection[str] = ()) -> None:
+    """Print a table, where it is too wide with some columns folded. Cells are taken as they are, brackets too."""
+    table = Table(box=SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
+    for head in heads:
+        table.add_column(head, no_wrap=head not in folded, overflow="fold")
     for row in rows:
         table.add_row(*map(Text, row))
     stdout().print(table)
@@ -62,6 +65,6 @@ def progress() -> Progress:
 
 
 def angles(quaternion: Iterable[float], sigma_deg: Iterable[float]) -> list[str]:
-    """Give roll, pitch and yaw of a mounting for people, each such as "-1.2 ± 0.3", degrees."""
+    """Give roll, pitch and yaw of a mounting for people, each such as "-1.2 ±0.3", degrees."""
     degrees = np.degrees(core.quaternion.angles(list(quaternion)))
-    return [f"{angle:.1f} ± {sigma:.1f}" for angle, sigma in zip(degrees, sigma_deg, strict=True)]
+    return [f"{angle:.1f} ±{sigma:.1f}" for angle, sigma in zip(degrees, sigma_deg, strict=True)]

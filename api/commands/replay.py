@@ -21,7 +21,7 @@ from core import PRESETS, Event, Outcome, Parameters, Samples, Status
 PIECE = 60.0
 """s of log time given to the estimator at once"""
 
-HEADS = ("file", "minutes", "samples", "fixes", "rejected", "stage", "result", *(f"{angle}, deg" for angle in ANGLES))
+HEADS = ("file", "min", "samples", "fixes", "stage", *(f"{angle} °" for angle in ANGLES), "needs")
 
 
 class Result(NamedTuple):
@@ -66,7 +66,8 @@ def run(logs: list[Path], log_format: Format | None, preset: str, every: float, 
         if as_json:
             typer.echo(json.dumps(_summary(results[-1]), allow_nan=False))
     if results and not as_json:
-        output.print_table(HEADS, map(_row, results))
+        output.print_table(HEADS, map(_row, results), folded=("file", "needs"))
+        _print_rejected(results)
     if len(results) < len(logs):
         raise typer.Exit(output.UNREADABLE)
 
@@ -178,22 +179,29 @@ def _with_angles(document: dict[str, Any]) -> dict[str, Any]:
     return document | presenting.rotation(document["quaternion"])
 
 
+def _print_rejected(results: list[Result]) -> None:
+    for result in results:
+        if result.rejected:
+            reasons = ", ".join(f"{reason} {count}" for reason, count in result.rejected.items())
+            typer.echo(f"{result.file}: rejected {reasons}")
+
+
 def _row(result: Result) -> list[str]:
+    status = result.status
     return [
         str(result.file),
         f"{result.duration / 60:.1f}",
         str(result.samples),
         str(result.fixes),
-        ", ".join(f"{reason} {count}" for reason, count in result.rejected.items()),
-        result.status.stage.word,
-        *_found(result.status),
+        status.stage.word,
+        *_angles(status),
+        ", ".join(status.needs.words),
     ]
 
 
-def _found(status: Status) -> list[str]:
-    """Say what was found, with its angles."""
-    known = status.mount or status.estimate
+def _angles(status: Status) -> list[str]:
+    """Give the angles of the mounting in force, else those of the estimate."""
+    known = status.mount if status.mount and not status.mount.suspect else status.estimate
     if known is None:
-        return ["nothing yet; needs " + ", ".join(status.needs.words)]
-    name = "estimate" if status.mount is None else "mount, suspect" if status.mount.suspect else "mount"
-    return [name, *output.angles(known.quaternion, presenting.degrees(known.sigma))]
+        return ["-"] * len(ANGLES)
+    return output.angles(known.quaternion, presenting.degrees(known.sigma))

@@ -41,6 +41,7 @@ def run(
     new
         register the device if it is not there
     """
+    _check_address(server)
     log, samples = _open(path, log_format, course)
     name = session or _session_name(log, chunk_seconds)
     try:
@@ -53,9 +54,16 @@ def run(
             answer, duplicates = _send(device, log, samples, chunk_seconds, realtime)
     except (RefusedError, UnavailableError) as error:
         output.fail(f"{path}: {error}")
-    except (httpx.InvalidURL, httpx.UnsupportedProtocol) as error:
-        output.fail(f"{server}: {error}", output.UNREADABLE)
     _report(answer, duplicates)
+
+
+def _check_address(server: str) -> None:
+    try:
+        url = httpx.URL(server)
+    except httpx.InvalidURL:
+        url = httpx.URL()
+    if url.scheme not in {"http", "https"} or not url.host:
+        output.fail(f"{server}: expected an address such as http://127.0.0.1:8000", output.UNREADABLE)
 
 
 def _open(path: Path, log_format: Format | None, course: str) -> tuple[LogFile, Samples]:
