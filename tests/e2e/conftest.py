@@ -13,9 +13,9 @@ from tests.server import ROOT
 from tests.service import ADMIN_KEY, Api
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
-    """Debian's Chromium."""
+    """Debian's Chromium; for a module only, because Playwright's event loop is in the way of other tests' loops."""
     path = shutil.which("chromium")
     assert path, "Chromium is missing: install Debian's package `chromium`"
     with sync_playwright() as playwright:

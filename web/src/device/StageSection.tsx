@@ -1,5 +1,5 @@
 import { CircleCheckBig, TriangleAlert } from "lucide-react";
-import type { Installation, Need } from "../api/types";
+import type { Installation, Need, Verification } from "../api/types";
 import { ClockTime } from "../components/RelativeTime";
 import { Progress } from "../components/StageBadge";
 import { Notice } from "../components/Tone";
@@ -9,7 +9,7 @@ import css from "./stage.module.css";
 
 /** The answer to "what now?", large enough to read at arm's length. */
 export function StageSection({ installation }: { installation: Installation }) {
-  const { stage, hint, needs, progress, mount } = installation;
+  const { stage, hint, needs, progress, mount, verification } = installation;
   return (
     <section className={`card ${css.stage}`} data-stage={stage} aria-label="Stage of the calibration">
       <Stepper stage={stage} />
@@ -17,6 +17,7 @@ export function StageSection({ installation }: { installation: Installation }) {
         {stage === "confirmed" && <CircleCheckBig size={40} className={css.check} aria-hidden />}
         <p className={css.hint}>{hint}</p>
       </div>
+      {verification.state === "running" && <Countdown verification={verification} />}
       {mount?.status === "suspect" && <Suspect since={mount.confirmed_at} />}
       {needs.length > 0 && <Needs needs={needs} />}
       <div className={css.progress}>
@@ -27,6 +28,17 @@ export function StageSection({ installation }: { installation: Installation }) {
         Stage: {STAGE[stage].word}. {hint}
       </p>
     </section>
+  );
+}
+
+function Countdown({ verification: { elapsed_s, duration_s } }: { verification: Verification }) {
+  return (
+    <p className={css.countdown}>
+      Drive test:{" "}
+      <b>
+        {Math.floor(Math.min(elapsed_s, duration_s))} of {Math.round(duration_s)} s
+      </b>
+    </p>
   );
 }
 
