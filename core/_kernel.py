@@ -5,7 +5,7 @@ layouts and parameters arrive as argument types. Records are explained in `state
 with its equations in `docs/method.md`. The order here is the order of the flow chart (thesis 6.2).
 
 Abbreviations: `p` parameters, `c` clock, `a` coarse alignment (accumulators), `m` filter, `s` settling, `v`
-verification, `g` change; `e` the epoch at hand.
+verification, `g` change; `e` the epoch at hand, `l` the longer one of the coarse alignment.
 """
 
 import math
@@ -43,6 +43,7 @@ EPOCH = np.dtype(
         ("speed_change", "f8"),
         ("course", "f8"),  # rad at its end, nan = not trusted
         ("yaw_rate", "f8"),  # rad/s from the course, nan = not known
+        ("lateral", "f8"),  # m/s2, speed times yaw rate
         ("climb", "f8"),  # m/s, nan = no altitude
         ("climb_height", "f8"),  # m gained
         ("grade", "f8"),  # sine of the slope
@@ -306,6 +307,7 @@ def describe_epoch(p, c, e, t, speed, course):
     e["yaw_rate"] = -wrap(course - c["fix_course"]) / period
     if slow and not p["filter_low_speed_course"]:
         e["yaw_rate"] = np.nan
+    e["lateral"] = e["mean_speed"] * e["yaw_rate"]
     e["climb"] = c["climb"] if math.isfinite(c["altitude"]) else np.nan
     e["climb_height"] = c["altitude"] - c["fix_altitude"]
     e["grade"] = 0.0
@@ -351,11 +353,40 @@ def take_fix(p, c, e, t, fix, counts, scratch):
 
 
 @njit(cache=True, nogil=True)
+def merge_epoch(p, m, e):
+    """Merge an epoch into the longer one `m` that the coarse alignment uses; True when that is long enough.
+
+    The noise of a speed difference counts less the longer the epoch, and driving shows little above 1 Hz.
+    """
+    if m["period"] >= p["coarse_min_epoch"]:
+        m["period"] = 0.0
+    before = m["period"] / (m["period"] + e["period"])
+    m["speed_change"] = (m["speed_change"] if before > 0 else 0.0) + e["speed_change"]
+    m["period"] += e["period"]
+    m["mean_speed"] = mixed(before, m["mean_speed"], e["mean_speed"])
+    m["yaw_rate"] = mixed(before, m["yaw_rate"], e["yaw_rate"])
+    m["lateral"] = mixed(before, m["lateral"], e["lateral"])
+    m["grade"] = mixed(before, m["grade"], e["grade"])
+    m["gyro"] = e["gyro"] and (m["gyro"] or before == 0)
+    for h in range(p["epoch_latency_count"]):
+        for i in range(3):
+            m["f_s"][h, i] = mixed(before, m["f_s"][h, i], e["f_s"][h, i])
+            m["w_s"][h, i] = mixed(before, m["w_s"][h, i], e["w_s"][h, i])
+    return m["period"] >= p["coarse_min_epoch"]
+
+
+@njit(cache=True, nogil=True)
+def mixed(share, x, y):
+    """Mean of x and y, x with the given share."""
+    return y if share == 0 else share * x + (1 - share) * y
+
+
+@njit(cache=True, nogil=True)
 def accumulate(p, a, e, k):
     """Add an epoch in motion to the sums: kinematic specific force k_v against mean specific force."""
     weight = e["period"]
     k[0] = e["speed_change"] / e["period"] + GRAVITY * e["grade"]
-    k[1] = e["mean_speed"] * e["yaw_rate"]
+    k[1] = e["lateral"]
     k[2] = GRAVITY
     gyro = e["gyro"] and math.isfinite(p["coarse_gyro_noise_density"])
     a["time"] += weight
@@ -376,8 +407,10 @@ def accumulate(p, a, e, k):
 
 @njit(cache=True, nogil=True)
 def accumulate_gyro(p, a, e, weight):
-    """Add the pair angular rate, yaw rate from the course."""
+    """Add the pair angular rate, yaw rate from the course, which is the noisier the slower the vehicle."""
     rate = e["yaw_rate"]
+    course_noise = 2 * (p["filter_speed_noise"] / e["mean_speed"]) ** 2 / e["period"]
+    weight *= p["coarse_gyro_noise_density"] / (p["coarse_gyro_noise_density"] + course_noise)
     a["gyro_time"] += weight
     a["r"] += weight * rate
     a["rr"] += weight * rate * rate
@@ -543,7 +576,7 @@ def update_coarse(p, a, e, k, b):
     """Accumulate an epoch in motion and solve again once in a while; True when there is a new solution."""
     accumulate(p, a, e, k)
     since = a["time"] - a["solved_time"]
-    if a["time"] < 3.0 or since < p["coarse_interval"]:
+    if a["time"] < p["coarse_min_time"] or since < p["coarse_interval"]:
         return False
     interval = p["coarse_interval"]
     choose = p["epoch_latency_count"] > 1 and math.floor(a["time"] / (5 * interval)) != math.floor(
@@ -1123,14 +1156,16 @@ def recover_filter(p, m, a, s):
 
 
 @njit(cache=True, nogil=True)
-def process_epoch(p, a, w, m, s, v, g, e, scratch, b, events, count):
+def process_epoch(p, a, w, l, m, s, v, g, e, scratch, b, events, count):
     """All stages in order for one epoch; gives the number of events so far."""
     f_s, w_s, k, sigma = scratch[3][:3], scratch[4][:3], scratch[5][:3], scratch[6][:3]
     informative = e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])
-    if informative:
-        update_coarse(p, a, e, k, b)
-        excite(p, s, e, k)
-        if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, g, w, s, a, e, k, b):
+    if not informative:
+        l["period"] = 0.0
+    elif merge_epoch(p, l, e):
+        update_coarse(p, a, l, k, b)
+        excite(p, s, l, k)
+        if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, g, w, s, a, l, k, b):
             d = np.empty(3)
             difference(w["q_vs"], s["mount_q_vs"], d)
             angle = math.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
@@ -1253,11 +1288,11 @@ def report(p, c, a, m, s, v, rows, count):
 
 @njit(cache=True, nogil=True)
 def run(
-    params, clock, coarse, window, mekf, settling, verification, change, epochs,
+    params, clock, coarse, window, merged, mekf, settling, verification, change, epochs,
     t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, counts,
 ):  # fmt: skip
     """Take all samples of a chunk; mutates the state records; gives the number of rows and of events."""
-    p, c, a, w, m = params[0], clock[0], coarse[0], window[0], mekf[0]
+    p, c, a, w, l, m = params[0], clock[0], coarse[0], window[0], merged[0], mekf[0]
     s, v, g, e = settling[0], verification[0], change[0], epochs[0]
     scratch = np.zeros((8, 8))
     b = np.zeros((3, 3))
@@ -1275,6 +1310,6 @@ def run(
         else:
             integrate_sample(p, c, t[i], f_s[i], w_s[i])
         if fix >= 0 and fix_valid[fix] and take_fix(p, c, e, t[i], fixes[fix], counts, scratch):
-            event_count = process_epoch(p, a, w, m, s, v, g, e, scratch, b, events, event_count)
+            event_count = process_epoch(p, a, w, l, m, s, v, g, e, scratch, b, events, event_count)
         row_count = report(p, c, a, m, s, v, rows, row_count)
     return row_count, event_count

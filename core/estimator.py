@@ -47,6 +47,7 @@ def begin_session(params: Parameters, state: State) -> State:
     del params
     state = state.copy()
     state.filter["aligned"] = False
+    state.merged["period"] = 0.0
     return state._replace(clock=empty_clock())
 
 

@@ -57,7 +57,11 @@ class CoarseParameters:
     """rad2/s; square of the residual angular rate times its correlation time; infinite = gyroscope not used"""
     interval: float = 1.0
     """s of motion between two solutions"""
-    report_sigma: float = 30 * DEGREE
+    min_epoch: float = 0.95
+    """s; epochs are merged until they are this long"""
+    min_time: float = 10.0
+    """s of motion before the first solution"""
+    report_sigma: float = 20 * DEGREE
     """rad; a solution is reported as an estimate when the largest sigma is below"""
 
 
@@ -125,9 +129,9 @@ class SettlingParameters:
     """rad/s; STABLE when the average turns slower"""
     reliable_yaw_rate: float = 0.0
     """rad/s; RELIABLE when exceeded (thesis); 0 = RELIABLE is a statement about information, below"""
-    yaw_sigma: float = 1.6 * DEGREE
+    yaw_sigma: float = 1.8 * DEGREE
     """rad; RELIABLE below"""
-    tilt_sigma: float = 1.3 * DEGREE
+    tilt_sigma: float = 1.4 * DEGREE
     """rad; RELIABLE below"""
     excitation: float = 15.0
     """m2/s3, time integral of squared horizontal acceleration needed"""

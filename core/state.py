@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core._kernel import EPOCH
+
 RING = 84
 """points of the integrated IMU signal kept, 0.05 s or one sample apart: the longest epoch plus the longest latency"""
 AVERAGE_EPOCHS = 100
@@ -136,6 +138,8 @@ class State(NamedTuple):
     coarse: NDArray[np.void]
     window: NDArray[np.void]
     """forgetting coarse alignment for the orientation change, a `COARSE` record"""
+    merged: NDArray[np.void]
+    """the epoch the coarse alignment is collecting, an `EPOCH` record"""
     filter: NDArray[np.void]
     settling: NDArray[np.void]
     verification: NDArray[np.void]
@@ -146,7 +150,7 @@ class State(NamedTuple):
         return State(*(part.copy() for part in self))
 
 
-LAYOUT = State(CLOCK, COARSE, COARSE, FILTER, SETTLING, VERIFICATION, CHANGE)  # type: ignore[arg-type]
+LAYOUT = State(CLOCK, COARSE, COARSE, EPOCH, FILTER, SETTLING, VERIFICATION, CHANGE)  # type: ignore[arg-type]
 """The dtype of each part."""
 
 
@@ -175,6 +179,7 @@ def empty_state() -> State:
         empty_clock(),
         empty_coarse(),
         empty_coarse(),
+        np.zeros(1, EPOCH),
         np.zeros(1, FILTER),
         np.zeros(1, SETTLING),
         np.zeros(1, VERIFICATION),
