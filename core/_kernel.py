@@ -5,7 +5,7 @@ layouts and parameters arrive as argument types. Records are explained in `state
 with its equations in `docs/method.md`. The order here is the order of the flow chart (thesis 6.2).
 
 Abbreviations: `p` parameters, `c` clock, `a` coarse alignment (accumulators), `m` filter, `s` settling, `v`
-verification, `g` change; `e` the epoch at hand, `l` the longer one of the coarse alignment.
+verification, `g` change; `e` the epoch at hand, `x` the longer one of the coarse alignment.
 """
 
 import math
@@ -1156,16 +1156,16 @@ def recover_filter(p, m, a, s):
 
 
 @njit(cache=True, nogil=True)
-def process_epoch(p, a, w, l, m, s, v, g, e, scratch, b, events, count):
+def process_epoch(p, a, w, x, m, s, v, g, e, scratch, b, events, count):
     """All stages in order for one epoch; gives the number of events so far."""
     f_s, w_s, k, sigma = scratch[3][:3], scratch[4][:3], scratch[5][:3], scratch[6][:3]
     informative = e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])
     if not informative:
-        l["period"] = 0.0
-    elif merge_epoch(p, l, e):
-        update_coarse(p, a, l, k, b)
-        excite(p, s, l, k)
-        if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, g, w, s, a, l, k, b):
+        x["period"] = 0.0
+    elif merge_epoch(p, x, e):
+        update_coarse(p, a, x, k, b)
+        excite(p, s, x, k)
+        if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, g, w, s, a, x, k, b):
             d = np.empty(3)
             difference(w["q_vs"], s["mount_q_vs"], d)
             angle = math.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
@@ -1292,7 +1292,7 @@ def run(
     t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, counts,
 ):  # fmt: skip
     """Take all samples of a chunk; mutates the state records; gives the number of rows and of events."""
-    p, c, a, w, l, m = params[0], clock[0], coarse[0], window[0], merged[0], mekf[0]
+    p, c, a, w, x, m = params[0], clock[0], coarse[0], window[0], merged[0], mekf[0]
     s, v, g, e = settling[0], verification[0], change[0], epochs[0]
     scratch = np.zeros((8, 8))
     b = np.zeros((3, 3))
@@ -1310,6 +1310,6 @@ def run(
         else:
             integrate_sample(p, c, t[i], f_s[i], w_s[i])
         if fix >= 0 and fix_valid[fix] and take_fix(p, c, e, t[i], fixes[fix], counts, scratch):
-            event_count = process_epoch(p, a, w, l, m, s, v, g, e, scratch, b, events, event_count)
+            event_count = process_epoch(p, a, w, x, m, s, v, g, e, scratch, b, events, event_count)
         row_count = report(p, c, a, m, s, v, rows, row_count)
     return row_count, event_count
