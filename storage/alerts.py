@@ -56,17 +56,29 @@ class Filter(NamedTuple):
 _select = sa.select(
     alerts.c.pk, devices.c.id, *(alerts.c[name] for name in Alert._fields if name not in {"pk", "device_id"})
 ).join_from(alerts, devices)
+_find = _select.where(alerts.c.pk == sa.bindparam("pk"))
+_find_open = _select.where(
+    alerts.c.device_pk == sa.bindparam("device_pk"),
+    alert_unresolved,
+    alerts.c.kind.in_(sa.bindparam("kinds", expanding=True)),
+).order_by(alerts.c.pk)
+_add = sa.insert(alerts).returning(alerts.c.pk)
+_change = sa.update(alerts).where(alerts.c.pk == sa.bindparam("of_pk"))
+_counts = (
+    sa.select(alerts.c.kind, alerts.c.severity, sa.func.count())
+    .where(alert_unresolved)
+    .group_by(alerts.c.kind, alerts.c.severity)
+)
 
 
 def find(tx: ReadSession, pk: int) -> Alert | None:
     """Find an alert by its number."""
-    return tx.one(Alert, _select.where(alerts.c.pk == pk))
+    return tx.one(Alert, _find, pk=pk)
 
 
 def find_open(tx: ReadSession, device_pk: int, kinds: Sequence[str]) -> list[Alert]:
     """Give the alerts of a device of these kinds that are not resolved."""
-    unresolved = (alerts.c.device_pk == device_pk, alert_unresolved, alerts.c.kind.in_(kinds))
-    return tx.all(Alert, _select.where(*unresolved).order_by(alerts.c.pk))
+    return tx.all(Alert, _find_open, device_pk=device_pk, kinds=kinds)
 
 
 def page(tx: ReadSession, limit: int, before: int | None, wanted: Filter) -> list[Alert]:
@@ -88,38 +100,25 @@ def raise_(tx: WriteSession, device_pk: int, finding: Finding, now: datetime) ->
     """Open an alert, or count it once more when one of this kind is open; give its number."""
     for alert in find_open(tx, device_pk, [finding.kind]):
         values = finding._asdict() | {"occurrences": alert.occurrences + 1, "updated_at": now}
-        tx.execute(sa.update(alerts).where(alerts.c.pk == alert.pk).values(**values))
+        tx.execute(_change, of_pk=alert.pk, **values)
         return alert.pk
-    return tx.insert(
-        alerts, device_pk=device_pk, state=OPEN, opened_at=now, updated_at=now, occurrences=1, **finding._asdict()
-    )
+    opened = {"state": OPEN, "opened_at": now, "updated_at": now, "occurrences": 1}
+    return int(tx.execute(_add, device_pk=device_pk, **opened, **finding._asdict()).scalar_one())
 
 
 def acknowledge(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime) -> None:
     """Somebody has seen it."""
     values = {"state": ACKNOWLEDGED, "acknowledged_at": now, "acknowledged_by": by, "acknowledge_note": note}
-    tx.execute(sa.update(alerts).where(alerts.c.pk == pk).values(**values, updated_at=now))
+    tx.execute(_change, of_pk=pk, updated_at=now, **values)
 
 
 def resolve(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime) -> None:
     """It is over."""
     values = {"state": RESOLVED, "resolved_at": now, "resolved_by": by, "resolve_note": note}
-    tx.execute(sa.update(alerts).where(alerts.c.pk == pk).values(**values, updated_at=now))
+    tx.execute(_change, of_pk=pk, updated_at=now, **values)
 
 
 def counts(tx: ReadSession, device_pk: int | None = None) -> list[tuple[str, str, int]]:
     """Count alerts that are not resolved: (kind, severity, count)."""
-    statement = (
-        sa.select(alerts.c.kind, alerts.c.severity, sa.func.count())
-        .where(alert_unresolved)
-        .group_by(alerts.c.kind, alerts.c.severity)
-    )
-    if device_pk is not None:
-        statement = statement.where(alerts.c.device_pk == device_pk)
+    statement = _counts if device_pk is None else _counts.where(alerts.c.device_pk == device_pk)
     return tx.all(lambda kind, severity, count: (kind, severity, count), statement)
-
-
-def count_open(tx: ReadSession, device_pk: int) -> int:
-    """Count the alerts of a device that are not resolved."""
-    statement = sa.select(sa.func.count()).where(alerts.c.device_pk == device_pk, alert_unresolved)
-    return int(tx.value(statement))

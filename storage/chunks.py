@@ -41,71 +41,71 @@ class Waiting(NamedTuple):
     since: datetime | None
 
 
-_receipt = sa.select(*(chunks.c[name] for name in Receipt._fields))
-_body = sa.select(*(chunks.c[name] for name in Body._fields))
+_receipt = [chunks.c[name] for name in Receipt._fields]
+_body = [chunks.c[name] for name in Body._fields]
+_this = (chunks.c.session_pk == sa.bindparam("of_session_pk")) & (chunks.c.seq == sa.bindparam("of_seq"))
+_find = sa.select(*_receipt).where(_this)
+_find_waiting = sa.select(*_receipt, *_body).where(_this)
+_add = sa.insert(chunks)
+_settle = sa.update(chunks).where(_this)
+_waiting = sa.select(sa.func.count(), sa.func.min(chunks.c.seq), sa.func.min(chunks.c.received_at)).where(
+    chunks.c.session_pk == sa.bindparam("session_pk"), chunk_waits
+)
+_sessions_waiting = (
+    sa.select(sessions.c.pk)
+    .where(
+        sessions.c.device_pk == sa.bindparam("device_pk"),
+        sessions.c.pk.in_(sa.select(chunks.c.session_pk).where(chunk_waits)),
+    )
+    .order_by(sessions.c.pk)
+)
+_devices_waiting = (
+    sa.select(devices.c.id)
+    .distinct()
+    .join_from(chunks, sessions)
+    .join(devices)
+    .where(chunk_waits, chunks.c.received_at <= sa.bindparam("moment"))
+)
+_forget = sa.delete(chunks).where(chunks.c.received_at < sa.bindparam("before"), chunks.c.state == APPLIED)
 
 
 def find(tx: ReadSession, session_pk: int, seq: int) -> Receipt | None:
     """Find the receipt of a chunk."""
-    return tx.one(Receipt, _receipt.where(chunks.c.session_pk == session_pk, chunks.c.seq == seq))
+    return tx.one(Receipt, _find, of_session_pk=session_pk, of_seq=seq)
 
 
 def find_waiting(tx: ReadSession, session_pk: int, seq: int) -> tuple[Receipt, Body]:
     """Give a waiting chunk with its bytes."""
-    row = tx.connection.execute(
-        _receipt.add_columns(*_body.selected_columns).where(chunks.c.session_pk == session_pk, chunks.c.seq == seq)
-    ).one()
-    width = len(Receipt._fields)
-    return Receipt(*row[:width]), Body(*row[width:])
+    row = tx.connection.execute(_find_waiting, {"of_session_pk": session_pk, "of_seq": seq}).one()
+    return Receipt(*row[: len(_receipt)]), Body(*row[len(_receipt) :])
 
 
 def add(tx: WriteSession, receipt: Receipt, body: Body | None = None) -> None:
     """Store a receipt, with the bytes when the chunk has to wait."""
-    bytes_sent = {} if body is None else body._asdict()
-    tx.execute(sa.insert(chunks).values(**receipt._asdict(), **bytes_sent))
+    tx.execute(_add, **receipt._asdict(), **({} if body is None else body._asdict()))
 
 
 def settle(tx: WriteSession, receipt: Receipt) -> None:
     """Store what became of a waiting chunk and drop its bytes."""
-    tx.execute(
-        sa.update(chunks)
-        .where(chunks.c.session_pk == receipt.session_pk, chunks.c.seq == receipt.seq)
-        .values(**receipt._asdict(), **dict.fromkeys(Body._fields))
-    )
+    values = receipt._asdict() | dict.fromkeys(Body._fields)
+    tx.execute(_settle, of_session_pk=values.pop("session_pk"), of_seq=values.pop("seq"), **values)
 
 
 def waiting(tx: ReadSession, session_pk: int) -> Waiting:
     """Tell what waits in a session."""
-    statement = sa.select(sa.func.count(), sa.func.min(chunks.c.seq), sa.func.min(chunks.c.received_at))
-    found = tx.one(Waiting, statement.where(chunks.c.session_pk == session_pk, chunk_waits))
-    return found or Waiting(0, None, None)
+    return Waiting(*tx.connection.execute(_waiting, {"session_pk": session_pk}).one())
 
 
 def sessions_waiting(tx: ReadSession, device_pk: int) -> list[int]:
     """Give the sessions of a device that have waiting chunks, in the order in which they began."""
-    statement = (
-        sa.select(sessions.c.pk)
-        .where(
-            sessions.c.device_pk == device_pk,
-            sa.exists().where(chunks.c.session_pk == sessions.c.pk, chunk_waits),
-        )
-        .order_by(sessions.c.pk)
-    )
-    return tx.all(int, statement)
+    return tx.all(int, _sessions_waiting, device_pk=device_pk)
 
 
 def devices_waiting_since(tx: ReadSession, moment: datetime) -> list[str]:
-    """Give the ids of the devices that have a chunk waiting since before `moment`."""
-    statement = (
-        sa.select(devices.c.id)
-        .distinct()
-        .join_from(chunks, sessions)
-        .join(devices)
-        .where(chunk_waits, chunks.c.received_at <= moment)
-    )
-    return tx.all(str, statement)
+    """Give the ids of the devices that have a chunk waiting since `moment` or longer."""
+    return tx.all(str, _devices_waiting, moment=moment)
 
 
 def forget(tx: WriteSession, before: datetime) -> int:
-    """Remove the receipts of chunks that came in before a moment and were settled."""
-    return tx.execute(sa.delete(chunks).where(chunks.c.received_at < before, chunks.c.state == APPLIED)).rowcount
+    """Remove the receipts of chunks that came in before a moment and were applied."""
+    return tx.execute(_forget, before=before).rowcount

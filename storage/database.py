@@ -1,4 +1,8 @@
-"""The database, SQLite or PostgreSQL: read and write sessions as two types, and one commit point."""
+"""The database, SQLite or PostgreSQL: read and write sessions as two types, and one commit point.
+
+The files beside this one make their statements once, when they are imported, with parameters: building one for every
+call costs SQLAlchemy more time than the database needs to run it.
+"""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -26,31 +30,26 @@ class ReadSession:
         """True on PostgreSQL, False on SQLite."""
         return self.connection.dialect.name == "postgresql"
 
-    def one(self, make: Callable[..., T], statement: sa.Executable) -> T | None:
-        """Give the first row as `make(*row)`, or None."""
-        row = self.connection.execute(statement).first()
+    def one(self, make: Callable[..., T], statement: sa.Executable, **values: Any) -> T | None:
+        """Give the first row as `make(*row)`, or None; `values` are those of the statement's parameters."""
+        row = self.connection.execute(statement, values).first()
         return None if row is None else make(*row)
 
-    def all(self, make: Callable[..., T], statement: sa.Executable) -> list[T]:
+    def all(self, make: Callable[..., T], statement: sa.Executable, **values: Any) -> list[T]:
         """Give every row as `make(*row)`."""
-        return [make(*row) for row in self.connection.execute(statement)]
+        return [make(*row) for row in self.connection.execute(statement, values)]
 
-    def value(self, statement: sa.Executable) -> Any:
+    def value(self, statement: sa.Executable, **values: Any) -> Any:
         """Give the first column of the first row, or None."""
-        return self.connection.execute(statement).scalar()
+        return self.connection.execute(statement, values).scalar()
 
 
 class WriteSession(ReadSession):
     """A transaction that may write; everything in it becomes durable together, or nothing does."""
 
-    def execute(self, statement: sa.Executable) -> CursorResult[Any]:
+    def execute(self, statement: sa.Executable, **values: Any) -> CursorResult[Any]:
         """Run an INSERT, UPDATE or DELETE."""
-        return self.connection.execute(statement)
-
-    def insert(self, table: sa.Table, **values: Any) -> int:
-        """Insert one row and give its `pk`."""
-        inserted = self.connection.execute(sa.insert(table).values(**values).returning(table.c.pk))
-        return int(inserted.scalar_one())
+        return self.connection.execute(statement, values)
 
 
 class Database:

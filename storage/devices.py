@@ -1,4 +1,4 @@
-"""Devices, and the lock under which everything of one device is changed."""
+"""Devices, each listed with a summary of its installation."""
 
 from datetime import datetime
 from typing import Any, NamedTuple
@@ -54,23 +54,21 @@ _select = sa.select(
     _mount_status,
     open_alerts,
 ).join_from(devices, installations)
-
-
-def lock(tx: WriteSession, device_id: str) -> int | None:
-    """Make every other writer of this device wait until this transaction ends; give its `pk`, None when unknown."""
-    statement = sa.select(devices.c.pk).where(devices.c.id == device_id).with_for_update(key_share=True)
-    pk: int | None = tx.value(statement)
-    return pk
+_find = _select.where(devices.c.id == sa.bindparam("id"))
+_pk = sa.select(devices.c.pk).where(devices.c.id == sa.bindparam("id"))
+_add = sa.insert(devices).returning(devices.c.pk)
+_edit = sa.update(devices).where(devices.c.pk == sa.bindparam("of_pk"))
+_remove = sa.delete(devices).where(devices.c.pk == sa.bindparam("pk"))
 
 
 def find(tx: ReadSession, device_id: str) -> Device | None:
     """Find a device by its id."""
-    return tx.one(Device, _select.where(devices.c.id == device_id))
+    return tx.one(Device, _find, id=device_id)
 
 
 def exists(tx: ReadSession, device_id: str) -> int | None:
     """Give the `pk` of a device, None when unknown."""
-    pk: int | None = tx.value(sa.select(devices.c.pk).where(devices.c.id == device_id))
+    pk: int | None = tx.value(_pk, id=device_id)
     return pk
 
 
@@ -98,18 +96,19 @@ def page(
 
 def add(tx: WriteSession, device_id: str, name: str, vehicle: str | None, notes: str | None, now: datetime) -> int:
     """Register a device; `IntegrityError` when the id is taken."""
-    return tx.insert(devices, id=device_id, name=name, vehicle=vehicle, notes=notes, created_at=now)
+    added = tx.execute(_add, id=device_id, name=name, vehicle=vehicle, notes=notes, created_at=now)
+    return int(added.scalar_one())
 
 
 def edit(tx: WriteSession, pk: int, values: dict[str, Any]) -> None:
     """Change the texts of a device."""
     if values:
-        tx.execute(sa.update(devices).where(devices.c.pk == pk).values(**values))
+        tx.execute(_edit, of_pk=pk, **values)
 
 
 def remove(tx: WriteSession, pk: int) -> None:
     """Remove a device and everything of it."""
-    tx.execute(sa.delete(devices).where(devices.c.pk == pk))
+    tx.execute(_remove, pk=pk)
 
 
 def stages(tx: ReadSession, device_pk: int | None = None) -> dict[str, int]:

@@ -28,6 +28,25 @@ class Block(NamedTuple):
     rows: bytes
 
 
+_add = sa.insert(estimates)
+_marks = (
+    sa.select(*(estimates.c[name] for name in Mark._fields))
+    .join_from(estimates, sessions)
+    .where(sessions.c.device_pk == sa.bindparam("device_pk"))
+    .order_by(estimates.c.pk)
+)
+_blocks = (
+    sa.select(sessions.c.name, sessions.c.started_at, estimates.c.rows)
+    .join_from(estimates, sessions)
+    .where(estimates.c.pk.in_(sa.bindparam("pks", expanding=True)))
+    .order_by(estimates.c.pk)
+)
+_forget = sa.delete(estimates).where(estimates.c.received_at < sa.bindparam("before"))
+
+SLACK = 1_000_000
+"""us added to a period when blocks are looked for, so that rounding loses none"""
+
+
 def add(
     tx: WriteSession,
     session_pk: int,
@@ -37,8 +56,8 @@ def add(
     now: datetime,
 ) -> None:
     """Append a block: `t` its first and last time on the session's clock, `mark` its rows and stage changes."""
-    tx.insert(
-        estimates,
+    tx.execute(
+        _add,
         session_pk=session_pk,
         t_first=t[0],
         t_last=t[1],
@@ -49,10 +68,6 @@ def add(
     )
 
 
-SLACK = 1_000_000
-"""us added to a period when blocks are looked for, so that rounding loses none"""
-
-
 def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[Any]:
     """Time of a column on the session's clock, us since 1970."""
     return sa.type_coerce(sessions.c.started_at, sa.BigInteger) + column * 1e6
@@ -60,30 +75,20 @@ def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[Any]:
 
 def marks(tx: ReadSession, device_pk: int, start: datetime | None, end: datetime | None) -> list[Mark]:
     """Give the marks of the blocks that overlap [start, end], and perhaps their neighbours, in time order."""
-    statement = (
-        sa.select(estimates.c.pk, estimates.c.size, estimates.c.changes)
-        .join_from(estimates, sessions)
-        .where(sessions.c.device_pk == device_pk)
-        .order_by(estimates.c.pk)
-    )
+    statement = _marks
     if start is not None:
         statement = statement.where(_utc(estimates.c.t_last) >= microseconds(start) - SLACK)
     if end is not None:
         statement = statement.where(_utc(estimates.c.t_first) <= microseconds(end) + SLACK)
-    return tx.all(Mark, statement)
+    return tx.all(Mark, statement, device_pk=device_pk)
 
 
 def blocks(tx: ReadSession, pks: Sequence[int], batch: int = 500) -> list[Block]:
     """Give the blocks with these numbers, in that order of time."""
-    statement = (
-        sa.select(sessions.c.name, sessions.c.started_at, estimates.c.rows)
-        .join_from(estimates, sessions)
-        .order_by(estimates.c.pk)
-    )
     batches = (pks[i : i + batch] for i in range(0, len(pks), batch))
-    return [block for part in batches for block in tx.all(Block, statement.where(estimates.c.pk.in_(part)))]
+    return [block for part in batches for block in tx.all(Block, _blocks, pks=part)]
 
 
 def forget(tx: WriteSession, before: datetime) -> int:
     """Remove the blocks that came in before a moment."""
-    return tx.execute(sa.delete(estimates).where(estimates.c.received_at < before)).rowcount
+    return tx.execute(_forget, before=before).rowcount

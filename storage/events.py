@@ -44,29 +44,42 @@ class Event(NamedTuple):
     data: str
 
 
+def _bigint(xid8: sa.ColumnElement[object]) -> sa.ColumnElement[int]:
+    return sa.cast(sa.cast(xid8, sa.Text), sa.BigInteger)
+
+
+_oldest_running = _bigint(sa.func.pg_snapshot_xmin(sa.func.pg_current_snapshot()))
+_add_sqlite = sa.insert(events).values(xact=0)
+_add_postgresql = sa.insert(events).values(xact=_bigint(sa.func.pg_current_xact_id()))
+_after_sqlite = (
+    sa.select(events.c.xact, events.c.pk, events.c.device_id, events.c.type, events.c.data)
+    .where(
+        sa.tuple_(events.c.xact, events.c.pk)
+        > sa.tuple_(sa.bindparam("xact", type_=sa.BigInteger), sa.bindparam("pk", type_=sa.BigInteger))
+    )
+    .order_by(events.c.xact, events.c.pk)
+    .limit(sa.bindparam("limit"))
+)
+_after_postgresql = _after_sqlite.where(events.c.xact < _oldest_running)
+
+
 def add(tx: WriteSession, device_id: str, kind: str, data: str, now: datetime) -> None:
     """Append an event."""
-    xact = _bigint(sa.func.pg_current_xact_id()) if tx.is_postgresql else sa.literal(0)
-    tx.execute(sa.insert(events).values(xact=xact, device_id=device_id, type=kind, data=data, created_at=now))
+    add_here = _add_postgresql if tx.is_postgresql else _add_sqlite
+    tx.execute(add_here, device_id=device_id, type=kind, data=data, created_at=now)
 
 
 def after(tx: ReadSession, position: Position, limit: int = 500) -> list[Event]:
     """Give up to `limit` events after a position."""
-    statement = (
-        sa.select(events.c.xact, events.c.pk, events.c.device_id, events.c.type, events.c.data)
-        .where(sa.tuple_(events.c.xact, events.c.pk) > sa.tuple_(*map(sa.literal, position)))
-        .order_by(events.c.xact, events.c.pk)
-        .limit(limit)
-    )
-    if tx.is_postgresql:
-        statement = statement.where(events.c.xact < _oldest_running())
-    return tx.all(lambda xact, pk, *rest: Event(Position(xact, pk), *rest), statement)
+    after_here = _after_postgresql if tx.is_postgresql else _after_sqlite
+    values = {"xact": position.xact, "pk": position.pk, "limit": limit}
+    return tx.all(lambda xact, pk, *rest: Event(Position(xact, pk), *rest), after_here, **values)
 
 
 def latest(tx: ReadSession) -> Position:
     """Give the position now."""
     if tx.is_postgresql:
-        return Position(tx.value(sa.select(_oldest_running())), 0)
+        return Position(tx.value(sa.select(_oldest_running)), 0)
     return Position(0, tx.value(sa.select(sa.func.coalesce(sa.func.max(events.c.pk), 0))))
 
 
@@ -86,11 +99,3 @@ def forget(tx: WriteSession, before: datetime) -> None:
     if newest is not None:
         tx.execute(sa.delete(events).where(old))
         meta.put(tx, PRUNED, str(max(newest, pruned(tx))))
-
-
-def _oldest_running() -> sa.ColumnElement[int]:
-    return _bigint(sa.func.pg_snapshot_xmin(sa.func.pg_current_snapshot()))
-
-
-def _bigint(xid8: sa.ColumnElement[object]) -> sa.ColumnElement[int]:
-    return sa.cast(sa.cast(xid8, sa.Text), sa.BigInteger)

@@ -1,4 +1,7 @@
-"""Where the installation of each device stands: the estimator's snapshot (bytes to us) and what is shown of it."""
+"""Where the installation of each device stands: the estimator's snapshot (bytes to us) and what is shown of it.
+
+The row is also the lock under which everything of one device is changed.
+"""
 
 from datetime import datetime
 from typing import Any, NamedTuple
@@ -6,7 +9,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import installations
+from storage.models import alert_unresolved, alerts, devices, installations, sessions
 
 
 class Installation(NamedTuple):
@@ -26,29 +29,61 @@ class Installation(NamedTuple):
     revision: int
 
 
-_select = sa.select(*(installations.c[name] for name in Installation._fields))
+class Beside(NamedTuple):
+    """What is shown with an installation and kept elsewhere."""
+
+    since_started_at: datetime | None
+    """zero of the clock of the session in which the stage began"""
+    open_alerts: int
+
+
+_columns = [installations.c[name] for name in Installation._fields]
+_of_id = sa.select(*_columns).join_from(installations, devices).where(devices.c.id == sa.bindparam("id"))
+_lock = _of_id.with_for_update(key_share=True, of=installations)
+_get = sa.select(*_columns).where(installations.c.device_pk == sa.bindparam("device_pk"))
+_beside = sa.select(
+    sa.select(sessions.c.started_at).where(sessions.c.pk == sa.bindparam("since_session_pk")).scalar_subquery(),
+    sa.select(sa.func.count())
+    .where(alerts.c.device_pk == sa.bindparam("device_pk"), alert_unresolved)
+    .scalar_subquery(),
+)
+_add = sa.insert(installations)
+_save = sa.update(installations).where(installations.c.device_pk == sa.bindparam("of_device_pk"))
+_touch = _save.values(revision=installations.c.revision + 1)
+
+
+def lock(tx: WriteSession, device_id: str) -> Installation | None:
+    """Make every other writer of this device wait until this transaction ends; None when the device is unknown."""
+    return tx.one(Installation, _lock, id=device_id)
+
+
+def find(tx: ReadSession, device_id: str) -> Installation | None:
+    """Find the installation of a device by the device's id."""
+    return tx.one(Installation, _of_id, id=device_id)
 
 
 def get(tx: ReadSession, device_pk: int) -> Installation | None:
     """Find the installation of a device."""
-    return tx.one(Installation, _select.where(installations.c.device_pk == device_pk))
+    return tx.one(Installation, _get, device_pk=device_pk)
+
+
+def beside(tx: ReadSession, row: Installation) -> Beside:
+    """Give what is shown with an installation."""
+    values = {"since_session_pk": row.since_session_pk, "device_pk": row.device_pk}
+    return Beside(*tx.connection.execute(_beside, values).one())
 
 
 def add(tx: WriteSession, installation: Installation) -> None:
     """Store the installation of a new device."""
-    tx.execute(sa.insert(installations).values(**installation._asdict()))
+    tx.execute(_add, **installation._asdict())
 
 
 def save(tx: WriteSession, installation: Installation) -> None:
     """Store what evolves."""
     values = installation._asdict()
-    tx.execute(sa.update(installations).where(installations.c.device_pk == values.pop("device_pk")).values(**values))
+    tx.execute(_save, of_device_pk=values.pop("device_pk"), **values)
 
 
 def touch(tx: WriteSession, device_pk: int) -> None:
     """Raise the revision: something shown with the installation has changed."""
-    tx.execute(
-        sa.update(installations)
-        .where(installations.c.device_pk == device_pk)
-        .values(revision=installations.c.revision + 1)
-    )
+    tx.execute(_touch, of_device_pk=device_pk)

@@ -34,6 +34,16 @@ _select = sa.select(
 ).join_from(mounts, sessions)
 
 
+_current = (mounts.c.device_pk == sa.bindparam("of_device_pk")) & (mounts.c.status != SUPERSEDED)
+_find_current = _select.where(_current)
+_of_device = _select.where(mounts.c.device_pk == sa.bindparam("device_pk"))
+_find = _of_device.where(mounts.c.n == sa.bindparam("n"))
+_page = _of_device.order_by(mounts.c.n.desc()).limit(sa.bindparam("limit"))
+_last = sa.select(sa.func.max(mounts.c.n)).where(mounts.c.device_pk == sa.bindparam("device_pk"))
+_add = sa.insert(mounts)
+_set_status = sa.update(mounts).where(_current)
+
+
 def add(
     tx: WriteSession,
     device_pk: int,
@@ -45,49 +55,42 @@ def add(
 ) -> int:
     """Put a new mounting in force, in the place of the former one; give its number."""
     supersede(tx, device_pk)
-    last = tx.value(sa.select(sa.func.max(mounts.c.n)).where(mounts.c.device_pk == device_pk))
-    n = (last or 0) + 1
+    n = (tx.value(_last, device_pk=device_pk) or 0) + 1
     tx.execute(
-        sa.insert(mounts).values(
-            device_pk=device_pk,
-            n=n,
-            session_pk=session_pk,
-            t=t,
-            quaternion=quaternion,
-            sigma_deg=sigma_deg,
-            verification=verification,
-            status=IN_FORCE,
-        )
+        _add,
+        device_pk=device_pk,
+        n=n,
+        session_pk=session_pk,
+        t=t,
+        quaternion=quaternion,
+        sigma_deg=sigma_deg,
+        verification=verification,
+        status=IN_FORCE,
     )
     return n
 
 
 def supersede(tx: WriteSession, device_pk: int) -> None:
     """The current mounting holds no longer."""
-    _set_status(tx, device_pk, SUPERSEDED)
+    tx.execute(_set_status, of_device_pk=device_pk, status=SUPERSEDED)
 
 
 def suspect(tx: WriteSession, device_pk: int) -> None:
     """The current mounting is in doubt."""
-    _set_status(tx, device_pk, SUSPECT)
-
-
-def _set_status(tx: WriteSession, device_pk: int, status: str) -> None:
-    current = (mounts.c.device_pk == device_pk) & (mounts.c.status != SUPERSEDED)
-    tx.execute(sa.update(mounts).where(current).values(status=status))
+    tx.execute(_set_status, of_device_pk=device_pk, status=SUSPECT)
 
 
 def current(tx: ReadSession, device_pk: int) -> Mount | None:
     """Give the mounting in force, or the suspect one."""
-    return tx.one(Mount, _select.where(mounts.c.device_pk == device_pk, mounts.c.status != SUPERSEDED))
+    return tx.one(Mount, _find_current, of_device_pk=device_pk)
 
 
 def find(tx: ReadSession, device_pk: int, n: int) -> Mount | None:
     """Give mounting number `n` of a device."""
-    return tx.one(Mount, _select.where(mounts.c.device_pk == device_pk, mounts.c.n == n))
+    return tx.one(Mount, _find, device_pk=device_pk, n=n)
 
 
 def page(tx: ReadSession, device_pk: int, limit: int, before: int | None = None) -> list[Mount]:
     """Give up to `limit` mountings, newest first, from before number `before`."""
-    statement = _select.where(mounts.c.device_pk == device_pk).order_by(mounts.c.n.desc()).limit(limit)
-    return tx.all(Mount, statement if before is None else statement.where(mounts.c.n < before))
+    statement = _page if before is None else _page.where(mounts.c.n < before)
+    return tx.all(Mount, statement, device_pk=device_pk, limit=limit)

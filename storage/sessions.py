@@ -24,27 +24,33 @@ class Session(NamedTuple):
     started_at: datetime | None
 
 
-_select = sa.select(sessions.c.pk, sessions.c.name, sessions.c.next_seq, sessions.c.context, sessions.c.started_at)
+_select = sa.select(*(sessions.c[name] for name in Session._fields))
+_find = _select.where(sessions.c.device_pk == sa.bindparam("device_pk"), sessions.c.name == sa.bindparam("name"))
+_get = _select.where(sessions.c.pk == sa.bindparam("pk"))
+_add = sa.insert(sessions).returning(sessions.c.pk)
+_save = sa.update(sessions).where(sessions.c.pk == sa.bindparam("of_pk"))
 
 
 def find_or_add(tx: WriteSession, device_pk: int, name: str, now: datetime) -> Session:
     """Find a session by its name; one not heard of before is new."""
-    found = tx.one(Session, _select.where(sessions.c.device_pk == device_pk, sessions.c.name == name))
+    found = tx.one(Session, _find, device_pk=device_pk, name=name)
     if found is not None:
         return found
-    pk = tx.insert(sessions, device_pk=device_pk, name=name, next_seq=0, created_at=now)
-    return Session(pk, name, 0, None, None)
+    added = tx.execute(_add, device_pk=device_pk, name=name, next_seq=0, created_at=now)
+    return Session(added.scalar_one(), name, 0, None, None)
 
 
 def get(tx: ReadSession, pk: int) -> Session:
     """Give the session with this number."""
-    return Session(*tx.connection.execute(_select.where(sessions.c.pk == pk)).one())
+    return Session(*tx.connection.execute(_get, {"pk": pk}).one())
 
 
 def save(tx: WriteSession, session: Session) -> None:
     """Store what evolves."""
     tx.execute(
-        sa.update(sessions)
-        .where(sessions.c.pk == session.pk)
-        .values(next_seq=session.next_seq, context=session.context, started_at=session.started_at)
+        _save,
+        of_pk=session.pk,
+        next_seq=session.next_seq,
+        context=session.context,
+        started_at=session.started_at,
     )

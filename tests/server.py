@@ -12,10 +12,9 @@ from pathlib import Path
 
 import httpx
 
-from tests.service import ADMIN_KEY, Api
+from tests.service import ADMIN_KEY, COMPILE_SECONDS, Api
 
 ROOT = Path(__file__).parent.parent
-START_SECONDS = 90.0
 
 
 class ServerProcess:
@@ -45,7 +44,7 @@ class ServerProcess:
             )
 
     def wait_until_ready(self) -> None:
-        deadline = time.monotonic() + START_SECONDS
+        deadline = time.monotonic() + COMPILE_SECONDS
         while True:
             assert self.process is not None
             assert self.process.poll() is None, self.log.read_text()

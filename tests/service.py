@@ -5,6 +5,8 @@ from typing import Any, Protocol
 
 ADMIN_KEY = "admin-key-of-the-tests-0123456789abcdef"
 API = "/api/v1"
+COMPILE_SECONDS = 300.0
+"""s at most until a busy machine has compiled the estimator, when no cache has it"""
 Json = dict[str, Any]
 
 
@@ -43,7 +45,7 @@ class Api:
     def post(self, path: str, json: Any = None, expect: int = 200) -> Any:
         return self.call("POST", path, expect, json=json).json()
 
-    def wait_until_ready(self, seconds: float = 60.0) -> None:
+    def wait_until_ready(self, seconds: float = COMPILE_SECONDS) -> None:
         deadline = time.monotonic() + seconds
         while self.call("GET", "/readyz").status_code != 200:
             assert time.monotonic() < deadline, "the service does not become ready"

@@ -7,7 +7,7 @@ from pydantic import AwareDatetime
 
 from api import schemas
 from api.dependencies import AnyDevice, BeforeNumber, CurrentContext, Limit, Requires
-from api.services import fleet, history, paging, presenting, publishing
+from api.services import fleet, history, paging, presenting
 from api.services.access import Role
 from api.services.errors import NotFoundError
 from storage import mounts
@@ -20,8 +20,7 @@ Number = Annotated[int, Path(ge=1, le=2**31 - 1, description="Number of the moun
 @router.get("/installation")
 def read_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
     """Tell where the installation stands and what is missing."""
-    with context.database.read() as tx:
-        return publishing.read_installation(tx, fleet.number(tx, device_id), device_id)
+    return fleet.read_installation(context, device_id)
 
 
 @router.post("/installation/restart", dependencies=[Depends(Requires(Role.INSTALLER))])

@@ -15,7 +15,7 @@ from api import schemas
 from api.services import presenting, publishing
 from api.services.context import Context
 from api.services.errors import NotFoundError
-from storage import alerts, devices
+from storage import alerts, installations
 from storage.database import ReadSession, WriteSession
 
 ENDED_BY_CONFIRMATION = ("orientation_changed", "sensor_fault")
@@ -102,11 +102,11 @@ def _settle(
     now = context.clock()
     with context.database.write() as tx:
         device_id = _found(tx, pk).device_id
-        device_pk = devices.lock(tx, device_id)
-        if device_pk is not None and _found(tx, pk).state in from_states:
+        row = installations.lock(tx, device_id)
+        if row is not None and _found(tx, pk).state in from_states:
             change(tx, pk, by, note, now)
             publishing.alert_changed(tx, pk, now)
-            publishing.installation_touched(tx, device_pk, device_id, now)
+            publishing.installation_touched(tx, row, device_id, now)
         shown = presenting.alert(_found(tx, pk))
     context.wake()
     return shown

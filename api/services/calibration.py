@@ -11,7 +11,7 @@ from api.formats.log import Reading
 from api.services import alerting, history, presenting, publishing
 from api.services.context import Context
 from api.services.errors import NotFoundError, UnusableError
-from storage import devices, installations, mounts
+from storage import installations, mounts
 from storage.database import WriteSession
 from storage.installations import Installation
 from storage.sessions import Session
@@ -34,12 +34,12 @@ class Calibration:
         self.row = row
         self.now = context.clock()
         self._state: core.State | None = None
+        self._shown: schemas.Installation | None = None
 
     @classmethod
     def open(cls, tx: WriteSession, context: Context, device_id: str) -> "Calibration":
         """Lock the device and load its installation."""
-        device_pk = devices.lock(tx, device_id)
-        row = None if device_pk is None else installations.get(tx, device_pk)
+        row = installations.lock(tx, device_id)
         if row is None:
             raise NotFoundError("There is no such device.")
         return cls(tx, context, device_id, row)
@@ -142,12 +142,15 @@ class Calibration:
         if self._state is None:
             return
         self.row = self.row._replace(snapshot=core.encode(self._state))
+        self._shown = None
         installations.save(self.tx, self.row)
         publishing.installation_changed(self.tx, self.shown(), self.now)
 
     def shown(self) -> schemas.Installation:
         """Give the installation resource."""
-        return publishing.show(self.tx, self.row, self.device_id)
+        if self._shown is None:
+            self._shown = publishing.show(self.tx, self.row, self.device_id)
+        return self._shown
 
 
 def last_time(samples: core.Samples) -> float:

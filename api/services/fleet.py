@@ -77,10 +77,10 @@ def remove(context: Context, device_id: str) -> None:
 
 def locked(tx: WriteSession, device_id: str) -> int:
     """Lock a device and give its number."""
-    pk = devices.lock(tx, device_id)
-    if pk is None:
+    row = installations.lock(tx, device_id)
+    if row is None:
         raise NotFoundError(UNKNOWN_DEVICE)
-    return pk
+    return row.device_pk
 
 
 def number(tx: ReadSession, device_id: str) -> int:
@@ -89,6 +89,15 @@ def number(tx: ReadSession, device_id: str) -> int:
     if pk is None:
         raise NotFoundError(UNKNOWN_DEVICE)
     return pk
+
+
+def read_installation(context: Context, device_id: str) -> schemas.Installation:
+    """Give the installation of a device."""
+    with context.database.read() as tx:
+        row = installations.find(tx, device_id)
+        if row is None:
+            raise NotFoundError(UNKNOWN_DEVICE)
+        return publishing.show(tx, row, device_id)
 
 
 def restart(context: Context, device_id: str) -> schemas.Installation:

@@ -87,9 +87,10 @@ def take(calibration: Calibration, session: Session, chunk: Chunk, parsed: Parse
         _enter(calibration, session)
         receipt = _apply(calibration, session, receipt, parsed)
         chunks.add(calibration.tx, receipt)
-    else:
-        chunks.add(calibration.tx, receipt, chunk.body)
-    catch_up(calibration)
+        catch_up(calibration)
+        return receipt
+    chunks.add(calibration.tx, receipt, chunk.body)
+    catch_up(calibration)  # it may be the one too many that declares the gap
     return chunks.find(calibration.tx, session.pk, chunk.seq) or receipt
 
 

@@ -83,14 +83,14 @@ def rotation(quaternion: list[float]) -> dict[str, Any]:
 def installation(
     row: installations.Installation,
     device_id: str,
-    since_started_at: datetime | None,
+    beside: installations.Beside,
     mount_row: mounts.Mount | None,
-    open_alerts: int,
 ) -> schemas.Installation:
     """Give the installation resource."""
     shown = row.status
     now = shown["estimate"]
-    since = row.since_at if since_started_at is None or row.since_t is None else utc(since_started_at, row.since_t)
+    started_at = beside.since_started_at
+    since = row.since_at if started_at is None or row.since_t is None else utc(started_at, row.since_t)
     return schemas.Installation.model_validate(
         {
             "device_id": device_id,
@@ -102,7 +102,7 @@ def installation(
             "estimate": None if now is None else now | rotation(now["quaternion"]),
             "verification": shown["verification"],
             "mount": None if mount_row is None else mount(mount_row),
-            "open_alerts": open_alerts,
+            "open_alerts": beside.open_alerts,
             "last_data_at": row.last_data_at,
             "revision": row.revision,
         }

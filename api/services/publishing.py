@@ -5,23 +5,13 @@ from typing import Literal
 
 from api import schemas
 from api.services import presenting
-from storage import alerts, devices, events, installations, mounts, sessions
+from storage import alerts, devices, events, installations, mounts
 from storage.database import ReadSession, WriteSession
-
-
-def read_installation(tx: ReadSession, device_pk: int, device_id: str) -> schemas.Installation:
-    """Give the installation resource of a device that exists."""
-    row = installations.get(tx, device_pk)
-    if row is None:
-        raise LookupError(f"device {device_id} has no installation")
-    return show(tx, row, device_id)
 
 
 def show(tx: ReadSession, row: installations.Installation, device_id: str) -> schemas.Installation:
     """Give the installation resource of a row."""
-    started_at = None if row.since_session_pk is None else sessions.get(tx, row.since_session_pk).started_at
-    mount = mounts.current(tx, row.device_pk)
-    return presenting.installation(row, device_id, started_at, mount, alerts.count_open(tx, row.device_pk))
+    return presenting.installation(row, device_id, installations.beside(tx, row), mounts.current(tx, row.device_pk))
 
 
 def installation_changed(tx: WriteSession, shown: schemas.Installation, now: datetime) -> None:
@@ -29,10 +19,10 @@ def installation_changed(tx: WriteSession, shown: schemas.Installation, now: dat
     events.add(tx, shown.device_id, "installation", shown.model_dump_json(), now)
 
 
-def installation_touched(tx: WriteSession, device_pk: int, device_id: str, now: datetime) -> None:
+def installation_touched(tx: WriteSession, row: installations.Installation, device_id: str, now: datetime) -> None:
     """Something shown with the installation has changed: raise its revision and tell."""
-    installations.touch(tx, device_pk)
-    installation_changed(tx, read_installation(tx, device_pk, device_id), now)
+    installations.touch(tx, row.device_pk)
+    installation_changed(tx, show(tx, row._replace(revision=row.revision + 1), device_id), now)
 
 
 def alert_changed(tx: WriteSession, pk: int, now: datetime) -> None:

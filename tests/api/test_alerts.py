@@ -7,19 +7,19 @@ from storage import alerts
 from storage import models as tables
 from storage.database import Database
 from tests.conftest import Clock
-from tests.drives import chunks
+from tests.drives import CHUNK_SECONDS, REMOUNTED_AT, remounted
 from tests.service import Api, Device
-
-REMOUNTED = (690.0, 1, True)
-MOVED = 16
-"""chunks until the change is seen"""
 
 
 @pytest.fixture
 def moved(api: Api) -> Device:
     device = api.add_device()
-    device.send_all(chunks(*REMOUNTED)[:MOVED])
+    device.send_all(until_moved())
     return device
+
+
+def until_moved() -> tuple[bytes, ...]:
+    return remounted().chunks[: remounted().moved + 1]
 
 
 def test_a_moved_device_opens_one_alert(moved: Device, api: Api, clock: Clock) -> None:
@@ -28,7 +28,7 @@ def test_a_moved_device_opens_one_alert(moved: Device, api: Api, clock: Clock) -
     data = alert.pop("data")
     assert data["angle_deg"] == pytest.approx(60, abs=120)
     assert (data["session"], data["mount"]) == ("a", 1)
-    assert 420 < data["t"] < MOVED * 30
+    assert REMOUNTED_AT < data["t"] < len(until_moved()) * CHUNK_SECONDS
     assert alert == {
         "id": alert["id"],
         "device_id": "box-1",
@@ -52,7 +52,7 @@ def test_a_moved_device_opens_one_alert(moved: Device, api: Api, clock: Clock) -
 
 def test_a_newly_confirmed_mounting_resolves_it(moved: Device, api: Api, clock: Clock) -> None:
     clock.advance(7)
-    shown = moved.send_all(chunks(*REMOUNTED)[MOVED:], start=MOVED)["installation"]
+    shown = moved.send_all(remounted().chunks[len(until_moved()) :], start=len(until_moved()))["installation"]
     (alert,) = api.get("/alerts")["items"]
     assert shown["open_alerts"] == 0
     assert (alert["state"], alert["resolved_by"], alert["resolved_at"]) == (
@@ -91,7 +91,7 @@ def test_who_acknowledged_and_resolved_is_recorded(moved: Device, api: Api, cloc
 
 def test_alerts_are_listed_newest_first_and_filtered(api: Api, clock: Clock) -> None:
     for n in range(3):
-        api.add_device(f"box-{n}").send_all(chunks(*REMOUNTED)[:MOVED])
+        api.add_device(f"box-{n}").send_all(until_moved())
         clock.advance(60)
     page = api.get("/alerts", params={"limit": 2})
     assert devices(page) == ["box-2", "box-1"]

@@ -12,10 +12,8 @@ from storage.database import Database
 from storage.estimates import Mark
 from storage.models import installations
 from tests.conftest import Clock
-from tests.drives import CHUNK_SECONDS, chunks, drive
+from tests.drives import CHUNK_SECONDS, chunks, plain, remounted
 from tests.service import Api, Device
-
-REMOUNTED = (690.0, 1, True)
 
 
 @pytest.fixture
@@ -52,7 +50,7 @@ def test_a_new_device_waits_for_data(device: Device) -> None:
 
 def test_the_installation_is_what_the_estimator_says(confirmed: Device) -> None:
     state = core.begin_session(core.DEFAULT, core.initial_state(core.DEFAULT))
-    _, outcome = core.advance(core.DEFAULT, state, drive())
+    _, outcome = core.advance(core.DEFAULT, state, plain().samples)
     now, shown = outcome.status, confirmed.installation()
     assert now.estimate is not None
     assert now.mount is not None
@@ -70,7 +68,7 @@ def test_the_installation_is_what_the_estimator_says(confirmed: Device) -> None:
 def test_times_are_on_the_devices_clock_and_never_in_the_future(confirmed: Device, clock: Clock) -> None:
     """The drive was replayed at once: it then ended now, and its stages lie in the past."""
     shown, history_ = confirmed.installation(), confirmed.get("estimates")
-    seconds = float(drive().t[-1])
+    seconds = float(plain().samples.t[-1])
     started_at = clock.now - timedelta(seconds=seconds)
     assert when(history_["time"][-1]) <= clock.now
     for t, time in zip(history_["t"], history_["time"], strict=True):
@@ -116,14 +114,15 @@ def test_no_mounting_yet_is_a_problem_that_says_so(device: Device) -> None:
 
 
 def test_a_moved_device_makes_its_mounting_suspect_until_a_new_one_is_confirmed(device: Device) -> None:
-    device.send_all(chunks(*REMOUNTED)[:14])
+    story = remounted()
+    device.send_all(story.chunks[: story.moved])
     tag = device.api.call("GET", f"/devices/{device.id}/mount", 200).headers["etag"]
-    suspect = device.send_all(chunks(*REMOUNTED)[14:16], start=14)["installation"]
+    suspect = device.send(story.chunks[story.moved], story.moved).json()["installation"]
     assert suspect["mount"]["status"] == "suspect"
     assert suspect["open_alerts"] == 1
     moved = device.api.call("GET", f"/devices/{device.id}/mount", 200, headers={"If-None-Match": tag})
     assert moved.json()["status"] == "suspect"
-    done = device.send_all(chunks(*REMOUNTED)[16:], start=16)["installation"]
+    done = device.send_all(story.chunks[story.moved + 1 :], start=story.moved + 1)["installation"]
     assert (done["mount"]["id"], done["mount"]["status"], done["open_alerts"]) == (2, "in_force", 0)
     newest, oldest = device.get("mounts")["items"]
     assert (newest["id"], oldest["id"], oldest["status"]) == (2, 1, "superseded")
@@ -145,17 +144,17 @@ def test_a_restart_forgets_the_mounting_and_keeps_the_history(confirmed: Device,
     assert fresh["revision"] > revision
     assert confirmed.get("estimates") == before
     assert [m["status"] for m in confirmed.get("mounts")["items"]] == ["superseded"]
-    again = confirmed.send_all(chunks(seed=2), session="b")["installation"]
+    again = confirmed.send_all(chunks(4), session="b")["installation"]
     assert (again["stage"], again["mount"]["id"]) == ("confirmed", 2)
 
 
 def test_a_snapshot_of_another_version_starts_the_calibration_anew(confirmed: Device, database: Database) -> None:
     with database.write() as tx:
         tx.execute(sa.update(installations).values(snapshot=b"of another version"))
-    answer = confirmed.send(chunks(seed=2)[0], 0, "b", expect=200).json()["installation"]
+    answer = confirmed.send(chunks(4)[0], 0, "b", expect=200).json()["installation"]
     assert answer["stage"] != "confirmed"
     assert answer["mount"]["status"] == "in_force"
-    assert confirmed.send_all(chunks(seed=2)[1:], "b", 1)["installation"]["mount"]["id"] == 2
+    assert confirmed.send_all(chunks(4)[1:], "b", 1)["installation"]["mount"]["id"] == 2
 
 
 # ---------------------------------------------------------------- history
@@ -164,7 +163,7 @@ def test_a_snapshot_of_another_version_starts_the_calibration_anew(confirmed: De
 def test_the_history_is_that_of_the_drive_at_once(confirmed: Device) -> None:
     params = core.DEFAULT.__class__(**{**core.DEFAULT.__dict__, "report_interval": 5.0})
     state = core.begin_session(params, core.initial_state(params))
-    rows = core.advance(params, state, drive())[1].estimates
+    rows = core.advance(params, state, plain().samples)[1].estimates
     shown = confirmed.get("estimates")
     np.testing.assert_allclose(shown["t"], rows.t)
     assert shown["stage"] == [core.Stage(stage).word for stage in rows.stage]

@@ -17,7 +17,7 @@ from storage import events
 from storage.database import Database
 from storage.events import Position
 from tests.conftest import Clock
-from tests.drives import chunks
+from tests.drives import chunks, remounted
 from tests.server import ServerProcess, running
 from tests.service import Api
 
@@ -39,7 +39,7 @@ class Listener:
         self._stop = threading.Event()
         headers = {"Authorization": f"Bearer {api.key}"}
         headers |= {"Last-Event-ID": last_event_id} if last_event_id else {}
-        self._request = {"url": f"{api.client.base_url}/api/v1/stream", "headers": headers, "timeout": 30.0}
+        self._url, self._headers = f"{api.client.base_url}/api/v1/stream", headers
         self._thread = threading.Thread(target=self._listen)
         self._thread.start()
         assert self.connected.wait(10)
@@ -49,7 +49,7 @@ class Listener:
             self._read()
 
     def _read(self) -> None:
-        with httpx.stream("GET", **self._request) as response:
+        with httpx.stream("GET", self._url, headers=self._headers, timeout=30.0) as response:
             assert response.headers["content-type"].startswith("text/event-stream")
             fields: dict[str, str] = {}
             for line in response.iter_lines():
@@ -141,11 +141,11 @@ def test_everyone_hears_only_what_they_may_see(live: Api) -> None:
     everything, own = Listener(live), Listener(mine.api)
     other.send(chunks()[0], 0, expect=200)
     mine.send(chunks()[0], 0, expect=200)
-    remounted = live.add_device("moved")
-    remounted.send_all(chunks(690.0, 1, True)[:16])
+    story = remounted()
+    live.add_device("moved").send_all(story.chunks[: story.moved + 1])
     live.call("PATCH", "/devices/mine", 200, json={"notes": "x"})
     assert [told.data["device_id"] for told in own.wait_for(2)] == ["mine", "mine"]
-    everything.wait_for(3 + 17 + 1)
+    everything.wait_for(2 + 1 + story.moved + 1 + 1 + 1)
     (alert,) = [told for told in everything.told if told.type == "alert"]
     assert alert.data == live.get("/alerts")["items"][0]
     assert len(own.told) == 2

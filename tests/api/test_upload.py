@@ -157,7 +157,7 @@ def test_a_gap_is_declared_after_the_timeout(device: Device, clock: Clock, setti
 
 
 def test_a_gap_is_declared_when_too_many_wait(device: Device, settings: Settings) -> None:
-    body = chunks(20.0)[0]
+    body = chunks()[0]
     header, *rows = body.splitlines(keepends=True)
     pieces = [header + b"".join(rows[i : i + 10]) for i in range(0, 10 * (settings.max_waiting_chunks + 2), 10)]
     device.send(pieces[0], 0, expect=200)

@@ -1,6 +1,6 @@
 """A fault at any statement of an upload undoes all of it, and the same chunk sent again does all of it."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -16,16 +16,15 @@ from storage import database as database_module
 from storage.database import Database
 from storage.models import metadata
 from tests.conftest import Clock
-from tests.drives import chunks
+from tests.drives import Story, chunks, remounted
 from tests.faults import stored
 from tests.service import Api
 
-DRIVE = (690.0, 1, True)
-EVENTFUL = {
-    "the first chunk": 0,
-    "a mounting is confirmed": 8,
-    "the device was moved": 14,
-    "a new mounting ends the alert": 21,
+EVENTFUL: dict[str, Callable[[Story], int]] = {
+    "the first chunk": lambda _: 0,
+    "a mounting is confirmed": lambda story: story.confirmed,
+    "the device was moved": lambda story: story.moved,
+    "a new mounting ends the alert": lambda story: story.confirmed_anew,
 }
 
 
@@ -72,8 +71,8 @@ def everything(database: Database) -> dict[str, list[Any]]:
 
 @pytest.mark.parametrize("what", EVENTFUL)
 def test_a_crash_at_any_statement_undoes_everything(api: Api, database: Database, what: str) -> None:
-    seq = EVENTFUL[what]
-    bodies = chunks(*DRIVE)
+    bodies = remounted().chunks
+    seq = EVENTFUL[what](remounted())
     calm, disturbed = api.add_device("calm"), api.add_device("disturbed")
     for device in (calm, disturbed):
         device.send_all(bodies[:seq])

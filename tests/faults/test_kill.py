@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from storage.database import Database
-from tests.drives import chunks
+from tests.drives import remounted
 from tests.faults import stored
 from tests.server import ServerProcess, running
 from tests.service import Device
@@ -17,16 +17,15 @@ from tests.service import Device
 KILLS = 20
 LATEST_KILL = 0.06
 """s after the chunks were sent; an upload takes about a third of it"""
-DRIVE = (690.0, 1, True)
 
 
 def send_until_applied(server: ServerProcess, device: Device, seq: int, body: bytes, stop: threading.Event) -> None:
     """Send a chunk again and again, as a device does, until it is applied."""
-    path, query = f"{server.url}/api/v1/devices/{device.id}/chunks", {"session": "a", "seq": seq}
+    path = f"{server.url}/api/v1/devices/{device.id}/chunks"
     headers = {"Authorization": f"Bearer {device.key}", "Content-Type": "text/csv"}
     while not stop.is_set():
         try:
-            answer = httpx.post(path, params=query, headers=headers, content=body, timeout=20.0)
+            answer = httpx.post(path, params={"session": "a", "seq": seq}, headers=headers, content=body, timeout=20.0)
         except httpx.TransportError:
             time.sleep(0.02)
             continue
@@ -41,7 +40,7 @@ def send_until_applied(server: ServerProcess, device: Device, seq: int, body: by
 def test_killing_the_server_changes_nothing(database_url: str, database: Database, tmp_path: Path, seed: int) -> None:
     generator = random.Random(seed)
     server = ServerProcess(database_url, tmp_path)
-    bodies = list(enumerate(chunks(*DRIVE)))
+    bodies = list(enumerate(remounted().chunks))
     with running(server) as api:
         calm, disturbed = api.add_device("calm"), api.add_device("disturbed")
         for n in range(KILLS):
@@ -63,7 +62,7 @@ def test_killing_the_server_changes_nothing(database_url: str, database: Databas
                 assert not sender.is_alive()
         for seq, body in bodies[KILLS:]:
             send_until_applied(server, disturbed, seq, body, stop)
-        calm.send_all(chunks(*DRIVE))
+        calm.send_all(remounted().chunks)
         assert disturbed.get("estimates")["quaternion"] == calm.get("estimates")["quaternion"]
     assert stored.of_device(database, "disturbed") == stored.of_device(database, "calm")
     assert len(stored.of_device(database, "calm")["mounts"]) == 2

@@ -6,9 +6,10 @@ import pytest
 import sqlalchemy as sa
 from sqlalchemy.exc import DBAPIError, IntegrityError
 
-from storage import devices, events, keys, meta
+from storage import devices, events, installations, keys, meta
 from storage.database import Database, ReadSession
 from storage.events import Position
+from storage.installations import Installation
 from storage.migrate import upgrade
 from storage.models import api_keys, metadata
 from storage.models import devices as device_table
@@ -24,13 +25,22 @@ def tables(database: Database) -> Database:
 
 def add_device(database: Database, device_id: str = "a") -> int:
     with database.write() as tx:
-        return devices.add(tx, device_id, "A", None, None, NOW)
+        pk = devices.add(tx, device_id, "A", None, None, NOW)
+        installations.add(
+            tx,
+            Installation(pk, None, None, "waiting", None, None, NOW, {"progress": 0.0}, last_data_at=None, revision=0),
+        )
+        return pk
 
 
 def test_a_failed_transaction_leaves_nothing(tables: Database) -> None:
-    with pytest.raises(RuntimeError), tables.write() as tx:
-        devices.add(tx, "a", "A", None, None, NOW)
-        raise RuntimeError
+    def fail() -> None:
+        with tables.write() as tx:
+            devices.add(tx, "a", "A", None, None, NOW)
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        fail()
     with tables.read() as tx:
         assert devices.exists(tx, "a") is None
 
@@ -105,7 +115,7 @@ def test_writers_of_one_device_wait_for_each_other(tables: Database) -> None:
     def add_one() -> None:
         for _ in range(5):
             with tables.write() as tx:
-                assert devices.lock(tx, "a") is not None
+                assert installations.lock(tx, "a") is not None
                 devices.edit(tx, pk, {"name": str(int(name(tx)) + 1)})
 
     with tables.write() as tx:
@@ -115,8 +125,8 @@ def test_writers_of_one_device_wait_for_each_other(tables: Database) -> None:
         thread.start()
     for thread in threads:
         thread.join()
-    with tables.read() as tx:
-        assert name(tx) == "20"
+    with tables.read() as reader:
+        assert name(reader) == "20"
 
 
 def test_facts_are_set_and_changed(tables: Database) -> None:

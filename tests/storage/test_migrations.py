@@ -36,7 +36,7 @@ def test_the_migrations_make_the_tables_of_the_models(empty_url: str) -> None:
     upgrade(database)
     assert tables(database) == {*metadata.tables, "alembic_version"}
     with database.read() as tx:
-        differences = compare_metadata(MigrationContext.configure(tx.connection, {"compare_type": True}), metadata)
+        differences = compare_metadata(MigrationContext.configure(tx.connection), metadata)
     assert differences == []
     upgrade(database)
     database.close()
@@ -64,7 +64,7 @@ def test_several_may_migrate_at_once(empty_url: str) -> None:
     def migrate(database: Database) -> None:
         try:
             upgrade(database)
-        except Exception as error:  # noqa: BLE001 - any failure counts
+        except Exception as error:
             failures.append(error)
 
     threads = [threading.Thread(target=migrate, args=(database,)) for database in databases]
