@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import sqlalchemy as sa
 from sqlalchemy import event
 from sqlalchemy.engine import Connection, CursorResult, Engine, make_url
+from sqlalchemy.exc import TimeoutError  # noqa: A004 - the one that also tells that no connection is free
 
 T = TypeVar("T")
 
@@ -86,8 +87,12 @@ class Database:
         if not self.is_sqlite:
             yield
             return
-        with self._writer:
+        if not self._writer.acquire(timeout=BUSY_TIMEOUT):
+            raise TimeoutError("the database is busy")
+        try:
             yield
+        finally:
+            self._writer.release()
 
     def close(self) -> None:
         """Close every connection."""

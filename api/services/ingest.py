@@ -11,7 +11,7 @@ from datetime import timedelta
 from typing import NamedTuple
 
 from api import schemas
-from api.formats import Limits, ParsedLog, parse
+from api.formats import FormatError, Limits, ParsedLog, Reading, parse
 from api.services.calibration import Calibration, last_time
 from api.services.context import Context
 from api.services.errors import (
@@ -82,10 +82,11 @@ def same(known: Receipt, parsed: ParsedLog) -> Receipt:
 def take(calibration: Calibration, session: Session, chunk: Chunk, parsed: ParsedLog) -> Receipt:
     """Take in a new chunk: apply it, and what waited for it, if it is its turn; else let it wait."""
     _refuse_late(calibration, session, chunk.seq)
-    receipt = _receipt(calibration, session, chunk, parsed)
+    reading = parsed.samples(session.context)
+    receipt = _receipt(calibration, session, chunk, parsed.digest, reading)
     if chunk.seq == session.next_seq:
         _enter(calibration, session)
-        receipt = _apply(calibration, session, receipt, parsed)
+        receipt = _apply(calibration, session, receipt, reading)
         chunks.add(calibration.tx, receipt)
         catch_up(calibration)
         return receipt
@@ -109,6 +110,9 @@ def close_gaps(context: Context) -> None:
             _close_gaps_of(context, device_id)
         except NotFoundError:
             continue  # removed meanwhile
+        except Exception:
+            log.exception("device %s: its gap cannot be closed", device_id)
+            continue
         context.wake()
 
 
@@ -129,12 +133,13 @@ def _refuse_late(calibration: Calibration, session: Session, seq: int) -> None:
         )
 
 
-def _receipt(calibration: Calibration, session: Session, chunk: Chunk, parsed: ParsedLog) -> Receipt:
+def _receipt(calibration: Calibration, session: Session, chunk: Chunk, digest: str, reading: Reading) -> Receipt:
     """Make the receipt of a chunk that waits; what cannot be used is refused now rather than when its turn comes."""
-    samples, rejected, _ = parsed.samples(session.context)
-    last_time(samples)
+    samples, rejected, _ = reading
+    if len(samples):
+        last_time(samples)
     fixes = int(samples.fix_valid.sum())
-    return Receipt(session.pk, chunk.seq, parsed.digest, WAITING, len(samples), fixes, rejected, calibration.now)
+    return Receipt(session.pk, chunk.seq, digest, WAITING, len(samples), fixes, rejected, calibration.now)
 
 
 def _enter(calibration: Calibration, session: Session) -> None:
@@ -171,17 +176,17 @@ def _apply_waiting(calibration: Calibration, session: Session, seq: int) -> None
     """Apply a chunk that waited; one that turns out unusable is passed over and counted."""
     receipt, body = chunks.find_waiting(calibration.tx, session.pk, seq)
     try:
-        receipt = _apply(calibration, session, receipt, read(calibration.context, body))
-    except UnusableError as error:
+        reading = read(calibration.context, body).samples(session.context)
+        receipt = _apply(calibration, session, receipt, reading)
+    except (FormatError, UnusableError) as error:
         log.warning("device %s: chunk %d of %s is unusable: %s", calibration.device_id, seq, session.name, error)
         receipt = receipt._replace(state=APPLIED, samples=0, fixes=0, rejected={"unusable": receipt.samples})
         sessions.save(calibration.tx, session._replace(next_seq=seq + 1))
     chunks.settle(calibration.tx, receipt)
 
 
-def _apply(calibration: Calibration, session: Session, receipt: Receipt, parsed: ParsedLog) -> Receipt:
+def _apply(calibration: Calibration, session: Session, receipt: Receipt, reading: Reading) -> Receipt:
     """Advance the estimator by one chunk and the session by one number."""
-    reading = parsed.samples(session.context)
     session, outcome = calibration.apply(session, reading, receipt.received_at)
     sessions.save(calibration.tx, session._replace(next_seq=receipt.seq + 1))
     if outcome is None:

@@ -6,12 +6,17 @@ import threading
 import pytest
 import sqlalchemy as sa
 import zstandard
+from starlette.testclient import TestClient
 
+from api.app import create_app
+from api.services import ingest
+from api.services.context import Context
 from api.settings import Settings
 from storage import installations
 from storage.database import Database
 from storage.models import chunks as chunk_table
 from storage.models import devices
+from storage.models import installations as installation_table
 from tests.conftest import Clock
 from tests.drives import chunks
 from tests.service import Api, Device
@@ -278,3 +283,43 @@ def test_session_and_number_are_checked(device: Device, query: dict[str, object]
 def test_an_unknown_device_is_not_made(api: Api) -> None:
     stranger = Device(api, "nobody", api.key or "")
     stranger.send(chunks()[0], 0, expect=404)
+
+
+def test_the_sweep_declares_gaps_without_an_upload(device: Device, api: Api, clock: Clock, settings: Settings) -> None:
+    """Also when another device's gap cannot be closed."""
+    context = Context.make(settings, clock)
+    broken = api.add_device("a-broken-one")
+    for each in (broken, device):
+        each.send(chunks()[1], 1, expect=202)
+    with context.database.write() as tx:
+        pk = tx.value(sa.select(devices.c.pk).where(devices.c.id == broken.id))
+        tx.execute(sa.update(installation_table).values(stage="nonsense").where(installation_table.c.device_pk == pk))
+    ingest.close_gaps(context)
+    device.send(chunks()[1], 1, expect=202)
+    clock.advance(settings.gap_timeout)
+    ingest.close_gaps(context)
+    assert device.send(chunks()[1], 1, expect=200).json()["chunk"]["state"] == "applied"
+    assert device.get("estimates")["t"]
+    context.database.close()
+
+
+def test_a_waiting_chunk_that_cannot_be_read_any_more_is_passed_over(
+    settings: Settings, clock: Clock, database: Database
+) -> None:
+    """The limits were lowered while it waited."""
+    header, *rows = chunks()[0].splitlines(keepends=True)
+    small = [header + b"".join(rows[i : i + 5]) for i in (0, 5)]
+    with TestClient(create_app(settings, clock)) as client:
+        device = Api(client).add_device()
+        device.admin.wait_until_ready()
+        device.send(chunks()[1], 1, expect=202)
+    lower = settings.model_copy(update={"max_decoded_bytes": 2000})
+    with TestClient(create_app(lower, clock)) as client:
+        device = Device(Api(client), device.id, device.key)
+        device.admin.wait_until_ready()
+        device.send(small[0], 0, expect=200)
+        device.send(small[1], 2, expect=200)
+        device.send(chunks()[1], 1, expect=413)
+    with database.read() as tx:
+        receipts = tx.connection.execute(sa.select(chunk_table.c.state, chunk_table.c.rejected)).all()
+    assert sorted(map(str, receipts)) == ["('applied', {'unusable': 1500})", "('applied', {})", "('applied', {})"]
