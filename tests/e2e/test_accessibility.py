@@ -21,7 +21,7 @@ def test_every_page_can_be_used_by_everybody(
 ) -> None:
     device = api.add_device("van-1", name="Van 1")
     api.add_device("new", name="Not yet heard of")
-    device.send_all(drives.chunks(900.0)[:4])
+    device.send_all(drives.plain().chunks)
     width, height = SIZES[size]
     with Visitor.at_work(chromium, address, width, height, color_scheme=scheme) as visitor:
         visitor.open()
@@ -44,6 +44,7 @@ def test_every_page_can_be_used_by_everybody(
 def test_the_keyboard_reaches_everything(visitor: Visitor, api: Api) -> None:
     api.add_device("van-1", name="Van 1")
     visitor.open()
+    visitor.see("Sign in")
     page = visitor.page
     page.keyboard.press("Tab")
     expect(page.get_by_role("textbox", name="Key")).to_be_focused()

@@ -34,7 +34,6 @@ export function SignIn() {
               spellCheck={false}
               errorProps={{ role: "alert" }}
               visibilityToggleButtonProps={{ "aria-label": "Show the key" }}
-              data-autofocus
               required
             />
             <Button type="submit" size="lg" loading={signIn.isPending} fullWidth>

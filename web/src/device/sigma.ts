@@ -1,7 +1,7 @@
 /** How sure the angles are, on a scale for bars. */
 
 /** Degrees, 1 sigma about vehicle x, y, z: a mounting is RELIABLE below these (`core.DEFAULT.settling`). */
-export const SIGMA_LIMIT = [1.3, 1.3, 1.6] as const;
+export const SIGMA_LIMIT = [1.4, 1.4, 1.8] as const;
 
 /** Degrees; what the two ends of a bar stand for. */
 const LEAST = 0.2;

@@ -13,7 +13,7 @@ const VIEWS: readonly { value: ViewName; label: string }[] = [
   { value: "behind", label: "Behind" },
 ];
 
-interface SceneProps {
+export interface SceneProps {
   quaternion: Quaternion;
   text: string;
   /** no WebGL here */
