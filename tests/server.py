@@ -67,7 +67,10 @@ class ServerProcess:
         assert self.process is not None
         begun = time.monotonic()
         self.process.terminate()
-        self.process.wait(seconds)
+        try:
+            self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(self.log.read_text()) from None
         return time.monotonic() - begun
 
 

@@ -18,6 +18,7 @@ DOCS = """<!doctype html>
 <head>
 <meta charset="utf-8">
 <title>Livella API</title>
+<link rel="icon" href="/swagger/favicon-32x32.png">
 <link rel="stylesheet" href="/swagger/swagger-ui.css">
 </head>
 <body>
