@@ -113,6 +113,32 @@ def test_a_device_is_followed_to_confirmed_without_reload(visitor: Visitor, inst
     installer.picture("simulated-360")
 
 
+def test_the_history_is_zoomed_and_unzoomed(visitor: Visitor, api: Api) -> None:
+    device = api.add_device("van-1", name="Van 1")
+    device.send_all(drives.plain().chunks)
+    visitor.sign_in()
+    visitor.open("/devices/van-1")
+    page = visitor.page
+    chart = page.get_by_role("img", name="Yaw over time")
+    chart.scroll_into_view_if_needed()
+    box = chart.bounding_box()
+    assert box is not None
+    asked = []
+    page.on("request", lambda request: asked.append(request.url) if "/estimates" in request.url else None)
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 40)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 45, steps=4)
+    page.mouse.up()
+    reset = page.get_by_role("button", name="Reset zoom")
+    expect(reset).to_be_visible()
+    expect(chart).to_be_visible()
+    assert "from=" in asked[-1]
+    assert "to=" in asked[-1]
+    reset.click()
+    expect(reset).to_be_hidden()
+    expect(chart).to_be_visible()
+
+
 def test_a_refit_begins_anew_and_keeps_the_history(visitor: Visitor, api: Api) -> None:
     device = api.add_device("van-1", name="Van 1")
     device.send_all(drives.plain().chunks)

@@ -1,19 +1,15 @@
 /** Changes the cache as the events of the live stream say. */
 import type { InfiniteData, QueryClient, QueryKey } from "@tanstack/react-query";
-import { keys } from "./keys";
+import { type DeviceFilter, keys } from "./keys";
 import { mountChanged, newer, replaced, withAlert, withInstallation } from "./merge";
-import type { Alert, Device, Installation, Page } from "./types";
-
-interface DeviceChange {
-  device_id: string;
-  change: "registered" | "edited" | "removed";
-  device: Device | null;
-}
+import type { Alert, Device, DeviceChange, Installation, Page } from "./types";
 
 export type LiveEvent =
   | { type: "installation"; data: Installation }
   | { type: "alert"; data: Alert }
   | { type: "device"; data: DeviceChange };
+
+type DeviceList = InfiniteData<Page<Device>>;
 
 /** Reads again, soon, what an event tells of but does not contain. */
 export type Soon = (key: QueryKey) => void;
@@ -31,11 +27,21 @@ function applyInstallation(client: QueryClient, told: Installation, soon: Soon):
   if (known && mountChanged(known, told)) soon(keys.mounts(id));
   client.setQueryData<Installation>(keys.installation(id), known && newer(known, told));
   client.setQueryData<Device>(keys.device(id), (device) => device && withInstallation(device, told));
-  client.setQueriesData<InfiniteData<Page<Device>>>({ queryKey: keys.devices }, (list) =>
+  client.setQueriesData<DeviceList>({ queryKey: keys.devices }, (list) =>
     mapPages(list, (page) => mapItem(page, id, (device) => withInstallation(device, told))),
   );
+  for (const key of listsWithOtherMembers(client, told)) soon(key);
   soon(keys.estimates(id));
   soon(keys.summary);
+}
+
+/** Lists of one stage that the device has just entered or left. */
+function listsWithOtherMembers(client: QueryClient, { device_id, stage }: Installation): QueryKey[] {
+  return client.getQueriesData<DeviceList>({ queryKey: keys.devices }).flatMap(([key, list]) => {
+    const wanted = (key[1] as DeviceFilter).stage;
+    const listed = list?.pages.some((page) => page.items.some(({ id }) => id === device_id));
+    return wanted && listed !== (wanted === stage) ? [key] : [];
+  });
 }
 
 function applyAlert(client: QueryClient, told: Alert, soon: Soon): void {
@@ -49,7 +55,7 @@ function applyAlert(client: QueryClient, told: Alert, soon: Soon): void {
 function applyDevice(client: QueryClient, { device_id, device }: DeviceChange, soon: Soon): void {
   if (device) {
     client.setQueryData<Device>(keys.device(device_id), device);
-    client.setQueriesData<InfiniteData<Page<Device>>>({ queryKey: keys.devices }, (list) =>
+    client.setQueriesData<DeviceList>({ queryKey: keys.devices }, (list) =>
       mapPages(list, (page) => replaced(page, device)),
     );
   }
@@ -59,9 +65,9 @@ function applyDevice(client: QueryClient, { device_id, device }: DeviceChange, s
 }
 
 function mapPages(
-  list: InfiniteData<Page<Device>> | undefined,
+  list: DeviceList | undefined,
   change: (page: Page<Device>) => Page<Device>,
-): InfiniteData<Page<Device>> | undefined {
+): DeviceList | undefined {
   if (!list) return list;
   const pages = list.pages.map(change);
   return pages.every((page, i) => page === list.pages[i]) ? list : { ...list, pages };

@@ -92,6 +92,19 @@ describe("an installation event", () => {
     expect(rows()[0]).toBe(other);
   });
 
+  it("reads a list of one stage again when the device enters or leaves it", () => {
+    const of = (stage: string) => keys.deviceList({ q: "", stage, hasOpenAlert: false });
+    const page = (...items: Device[]) => ({ pages: [{ items, next_cursor: null }], pageParams: [null] });
+    client.setQueryData(of("settling"), page(device()));
+    client.setQueryData(of("verifying"), page());
+    client.setQueryData(of("waiting"), page());
+    apply(client, { type: "installation", data: told }, soon);
+    expect(soon).toHaveBeenCalledWith(of("settling"));
+    expect(soon).toHaveBeenCalledWith(of("verifying"));
+    expect(soon).not.toHaveBeenCalledWith(of("waiting"));
+    expect(soon).not.toHaveBeenCalledWith(LIST);
+  });
+
   it("does not go back when it comes late", () => {
     const late = installation({ stage: "waiting", revision: 6 });
     const before = rows();

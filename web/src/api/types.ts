@@ -5,6 +5,7 @@ type Schemas = components["schemas"];
 
 export type Alert = Schemas["Alert"];
 export type Device = Schemas["Device"];
+export type DeviceChange = Schemas["DeviceChange"];
 export type DeviceDraft = Schemas["DeviceDraft"];
 export type Estimate = Schemas["Estimate"];
 export type Estimates = Schemas["Estimates"];

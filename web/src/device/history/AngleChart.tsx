@@ -1,21 +1,19 @@
 import { useComputedColorScheme } from "@mantine/core";
 import { useEffect, useRef, useState } from "react";
-import uPlot from "uplot";
+import type uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { wrap } from "../../lib/angles";
 import { fixed } from "../../lib/format";
 import { onTheClock } from "../../lib/time";
 import { type Angle, type AngleHistory, verticalRange } from "./history";
 import css from "./history.module.css";
-import { plotOptions } from "./plot";
+import { makePlot } from "./plot";
 
 const WORD: Record<Angle, { word: string; axis: "x" | "y" | "z" }> = {
   roll: { word: "Roll", axis: "x" },
   pitch: { word: "Pitch", axis: "y" },
   yaw: { word: "Yaw", axis: "z" },
 };
-/** Pixels; only the lowest chart carries the time axis. */
-const HEIGHT = { chart: 110, axis: 24 };
 
 interface AngleChartProps {
   angle: Angle;
@@ -59,25 +57,15 @@ function usePlot(
   useEffect(() => {
     const target = element.current;
     if (!target) return;
-    const height = HEIGHT.chart + (lowest ? HEIGHT.axis : 0);
-    const colour = getComputedStyle(target).getPropertyValue(`--livella-${WORD[angle].axis}`);
-    const options = plotOptions({
+    const [made, remove] = makePlot({
       element: target,
-      colour,
-      height,
-      axisHeight: lowest ? HEIGHT.axis : 0,
+      colour: getComputedStyle(target).getPropertyValue(`--livella-${WORD[angle].axis}`),
+      timed: lowest,
       onCursor: (found) => handlers.current.onCursor(found),
       onZoom: (from, to) => handlers.current.onZoom(from, to),
     });
-    const made = new uPlot(options, [[]], target);
-    const watcher = new ResizeObserver(() => made.setSize({ width: target.clientWidth, height }));
-    watcher.observe(target);
     plot.current = made;
-    return () => {
-      watcher.disconnect();
-      made.destroy();
-      plot.current = null;
-    };
+    return remove;
   }, [angle, lowest, scheme]);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: a chart made anew needs its data again

@@ -1,26 +1,45 @@
 /** Options of one angle's chart. Colours come from the page's own variables, so that light and dark both fit. */
-import type uPlot from "uplot";
+import uPlot from "uplot";
 import { wrap } from "../../lib/angles";
 import { fixed } from "../../lib/format";
 
 export interface PlotSettings {
   element: HTMLElement;
+  /** "#rrggbb" */
   colour: string;
-  /** pixels, with the time axis */
-  height: number;
-  /** pixels of the time axis; 0 = none */
-  axisHeight: number;
+  /** the time axis is drawn */
+  timed: boolean;
   onCursor: (row: number | null) => void;
   onZoom: (from: number, to: number) => void;
 }
 
+/** Pixels. */
+const HEIGHT = { chart: 110, axis: 24 };
 /** Charts with this key move their cursors together. */
 const SYNC = "livella-angles";
 /** Pixels; a shorter drag is a click. */
 const SHORTEST_DRAG = 8;
 
-export function plotOptions(settings: PlotSettings): uPlot.Options {
-  const { element, colour, height, axisHeight, onCursor, onZoom } = settings;
+/** Make a chart that keeps the width of its element; gives it, and the function that takes it away. */
+export function makePlot(settings: PlotSettings): [uPlot, () => void] {
+  const { element } = settings;
+  const options = plotOptions(settings);
+  const plot = new uPlot(options, [[]], element);
+  const watcher = new ResizeObserver(() =>
+    plot.setSize({ width: element.clientWidth, height: options.height }),
+  );
+  watcher.observe(element);
+  return [
+    plot,
+    () => {
+      watcher.disconnect();
+      plot.destroy();
+    },
+  ];
+}
+
+function plotOptions({ element, colour, timed, onCursor, onZoom }: PlotSettings): uPlot.Options {
+  const axisHeight = timed ? HEIGHT.axis : 0;
   const style = getComputedStyle(element);
   const line = style.getPropertyValue("--livella-line");
   const ink = style.getPropertyValue("--mantine-color-dimmed");
@@ -29,7 +48,7 @@ export function plotOptions(settings: PlotSettings): uPlot.Options {
   const edge: uPlot.Series = { stroke: "transparent", points: { show: false } };
   return {
     width: element.clientWidth,
-    height,
+    height: HEIGHT.chart + axisHeight,
     legend: { show: false },
     cursor: {
       sync: { key: SYNC },
@@ -44,7 +63,7 @@ export function plotOptions(settings: PlotSettings): uPlot.Options {
         ...axis,
         size: axisHeight,
         space: 70,
-        values: (_, ticks, __, ___, step) => (axisHeight ? timeTexts(ticks, step) : ticks.map(() => "")),
+        values: (_, ticks, __, ___, step) => (timed ? timeTexts(ticks, step) : ticks.map(() => "")),
       },
       { ...axis, size: 52, space: 24, values: (_, ticks) => ticks.map(tickText) },
     ],
