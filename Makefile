@@ -23,7 +23,7 @@ setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the
 web/node_modules/.package-lock.json: web/package.json web/package-lock.json | .venv/.installed
 	cd web && npm ci --no-audit --no-fund
 
-api/static/index.html: web/node_modules/.package-lock.json $(shell find web/src web/index.html web/vite.config.ts 2>/dev/null)
+api/static/index.html: web/node_modules/.package-lock.json $(shell find web/src web/public web/index.html web/vite.config.ts)
 	cd web && npm run build
 
 demo: setup  ## the service with a simulated fleet being calibrated
