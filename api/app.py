@@ -14,6 +14,7 @@ from typing import Any, TypedDict
 import anyio
 from anyio import to_thread
 from fastapi import FastAPI
+from starlette.middleware.gzip import GZipMiddleware
 
 from api import errors, headers, page
 from api.live import Hub
@@ -49,7 +50,7 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
     errors.install(app)
     app.include_router(service.router)
     app.include_router(api)
-    app.router.default = page.Page(app.router.default, page.STATIC)
+    app.router.default = GZipMiddleware(page.Page(app.router.default, page.STATIC))
     app.add_middleware(headers.SecurityHeaders)
     _describe(app)
     return app
