@@ -86,7 +86,7 @@ def test_tries_again_until_it_works(trouble: Answer) -> None:
     assert set(server.paths) == {"/api/v1/devices/box%201%2F2/chunks?session=s&seq=0&course=auto"}
 
 
-@pytest.mark.parametrize("seconds", ["1", formatdate(time.time() + 3600, usegmt=True)])
+@pytest.mark.parametrize("seconds", ["1", formatdate(time.time() + 3600, usegmt=True)], ids=["seconds", "date"])
 def test_waits_as_long_as_it_is_told_to(seconds: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(device, "LONGEST_WAIT", 1.0)
     with answering(Answer(503, PROBLEM, seconds), Answer(200)) as server:

@@ -142,7 +142,7 @@ def test_a_file_that_cannot_be_read_and_one_that_can(tmp_path: Path, drive: Log)
     [
         ("empty.csv", b"", "line 1: the log is empty"),
         ("photo.png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "not text"),
-        ("cut.csv.gz", gzip.compress(b"t,ax,ay,az,fix,lat,lon\n0,0,0,9.8,,,\n")[:-9], "truncated"),
+        ("cut.csv.gz", gzip.compress(b"t,ax,ay,az,fix,lat,lon\n0,0,0,9.8,,,\n", mtime=0)[:-9], "truncated"),
         ("header.csv", b"t,ax,ay,az,fix\n", 'column speed: the column "speed" is missing'),
         ("short.txt", b"1 2 3\n", "line 1: expected 11 cells, found 3"),
     ],
