@@ -1,8 +1,10 @@
 import gzip
+import io
 import itertools
 import random
 import threading
 
+import pyarrow as pa
 import pytest
 import sqlalchemy as sa
 import zstandard
@@ -219,7 +221,21 @@ def test_the_former_session_goes_on_until_the_new_one_begins(device: Device) -> 
     device.send(bodies[2], 2, "a", expect=409)
 
 
+def announcing(rows: int) -> bytes:
+    """Arrow stream whose only batch says that it has so many rows, in a few hundred bytes."""
+    batch = pa.record_batch({name: pa.nulls(rows) for name in ("t", "ax", "ay", "az", "fix", "speed", "course")})
+    sink = io.BytesIO()
+    with pa.ipc.new_stream(sink, batch.schema) as writer:
+        writer.write_batch(batch)
+    return sink.getvalue()
+
+
 BAD = {
+    "wrong column": (b"t,ax,ay,ac,fix,speed,course\n1,0,0,9.8,,,\n", "text/csv", 422),
+    "text in a number": (b"t,ax,ay,az,fix,speed,course\n1,0,0,down,,,\n", "text/csv", 422),
+    "not finite": (b"t,ax,ay,az,fix,speed,course\n1,0,nan,9.8,,,\n", "text/csv", 422),
+    "an image": (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\1\0", "text/csv", 422),
+    "a billion rows": (announcing(10**9), "application/vnd.apache.arrow.stream", 422),
     "no header": (b"1,2,3\n", "text/csv", 422),
     "empty": (b"", "text/csv", 422),
     "unknown type": (b"t,ax\n", "application/json", 415),
