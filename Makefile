@@ -50,13 +50,17 @@ check: lint  ## lint, types and unit tests in under 3 minutes
 lock:  ## pin what pyproject.toml allows
 	uv pip compile -q pyproject.toml --extra dev --universal --python-version 3.11 --no-header --no-annotate -o requirements.lock
 
+# The kernel is compiled, so its coverage is seen by running it uncompiled, beside the browser tests.
 test: setup  ## everything
 	tools/install-test-servers
 	$(MAKE) lint
 	cd web && npm test
-	pytest -m browser
-	pytest -m "not browser" -n 2 --cov=core --cov-report=
-	NUMBA_DISABLE_JIT=1 pytest -m "not compiled" -n 2 --cov=core --cov-append --cov-fail-under=95 --cov-report=term-missing tests/core/test_estimator.py tests/core/test_jacobians.py tests/core/test_filter_twin.py
+	pytest -q tests/core -n 2 --cov=core --cov-report=
+	pytest -m browser & browser=$$!; \
+	NUMBA_DISABLE_JIT=1 pytest -q -m "not compiled" --cov=core --cov-append --cov-fail-under=95 --cov-report=term-missing \
+		tests/core/test_estimator.py tests/core/test_jacobians.py tests/core/test_filter_twin.py; core=$$?; \
+	wait $$browser && exit $$core
+	pytest -m "not browser" --ignore tests/core -n 3
 
 bench: setup
 	for b in benchmarks/*.py; do $(BIN)/python $$b || exit 1; done
