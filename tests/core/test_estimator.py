@@ -34,7 +34,7 @@ def test_a_town_drive_ends_confirmed_at_the_true_mounting(name: str) -> None:
     mount = outcome.status.mount
     assert mount is not None
     assert not mount.suspect
-    assert angle_between(mount.quaternion, true) < 5 * DEGREE
+    assert angle_between(mount.quaternion, true) < 3 * DEGREE
     assert outcome.status.estimate is not None
     assert angle_between(outcome.status.estimate.quaternion, true) < 3 * DEGREE
     kinds = [event.kind for event in outcome.events]
@@ -229,10 +229,10 @@ def test_an_orientation_change_is_found_and_the_new_mounting_confirmed() -> None
     assert changes[0].angle == pytest.approx(25 * DEGREE, abs=8 * DEGREE)
     assert len(confirmed) == 2
     assert confirmed[0].quaternion is not None
-    assert angle_between(confirmed[0].quaternion, truth.q_vs) < 5 * DEGREE
+    assert angle_between(confirmed[0].quaternion, truth.q_vs) < 3 * DEGREE
     assert outcome.status.mount is not None
     assert not outcome.status.mount.suspect
-    assert angle_between(outcome.status.mount.quaternion, truth.mount_at(500.0)) < 5 * DEGREE
+    assert angle_between(outcome.status.mount.quaternion, truth.mount_at(500.0)) < 3 * DEGREE
 
 
 @pytest.mark.compiled
