@@ -56,6 +56,30 @@ class EventKind(StrEnum):
     FAULT = "fault"
 
 
+class Fault(StrEnum):
+    """What a `fault` event found."""
+
+    LEFT_HANDED = "left_handed"
+    """the axes are a mirror image: acceleration and turning contradict each other under every rotation"""
+    STUCK_AXIS = "stuck_axis"
+    """an axis repeats one value while the others move"""
+    SATURATED = "saturated"
+    """readings rest at the end of the range"""
+    DEVICE_LOOSE = "device_loose"
+    """the mounting keeps moving"""
+
+
+class Evidence(NamedTuple):
+    """The series a sequential test decided on, oldest first; E looks."""
+
+    t: Floats
+    """(E,) s, session clock"""
+    value: Floats
+    """(E,) the statistic, no unit"""
+    threshold: float
+    """the value that decides"""
+
+
 class Verification(NamedTuple):
     """The drive test (thesis 5.4): forward specific force integrated against the GPS speed."""
 
@@ -87,6 +111,14 @@ class Event(NamedTuple):
     """rad, size of the orientation change"""
     reason: str | None
     """with a fault or a failed verification: what is wrong, in words"""
+    axis: Floats | None = None
+    """(3,) unit vector, vehicle axes: axis of the orientation change, right-handed with `angle`"""
+    since: float | None = None
+    """s, session clock: when the device moved, or the fault began, as far as it shows"""
+    evidence: Evidence | None = None
+    """with an orientation change or a loose device: what the test saw"""
+    fault: Fault | None = None
+    """with a fault: which one"""
 
 
 class Estimates(NamedTuple):
