@@ -22,13 +22,27 @@ REFERENCE_PERIOD = 0.25
 RING_SPACING = 0.05
 """s"""
 
-SPEED, ACCELERATION, YAW_RATE, ATTITUDE, MOUNTING, BIAS, GYRO_BIAS = 0, 1, 2, 3, 6, 9, 12
+SLOPE_STEP = 0.15
+"""s; how signals change with the latency is seen over twice this time"""
+SATURATION_LEVEL = 14.0
+"""m/s2; readings that rest at one value above are at the end of the range"""
+FLAT_TOP = 2
+"""repetitions that make such a rest"""
+
+SPEED, ACCELERATION, YAW_RATE, GRADIENT, ATTITUDE, MOUNTING, BIAS = 0, 1, 2, 3, 5, 8, 11
+LEVER_ARM, ALTITUDE, LATENCY, SUSPENSION, ANTENNA, GYRO_BIAS = 14, 16, 17, 18, 20, 21
 """First index of each part of the error state."""
-MEASUREMENTS = 11
-"""specific force (3), velocity (3), yaw rate from the course, angular rate (3), yaw rate at standstill"""
+STATES = 24
+FORCE, VELOCITY, COURSE_RATE, RATE, STANDSTILL, HEIGHT = 0, 3, 6, 7, 10, 11
+"""First row of each measurement: specific force (3), velocity (3), yaw rate from the course, angular rate (3), yaw rate
+at standstill, altitude."""
+MEASUREMENTS = 12
 
 DUPLICATE_TIME, BEFORE_PREVIOUS, FIX_WITHOUT_VELOCITY, FIX_IMPLAUSIBLE = range(4)
 """Reasons of rejection."""
+
+NO_EPOCH, BROKEN, COMPLETE = range(3)
+"""What a fix makes of the epoch before it."""
 
 STARTED, PASSED, FAILED, CONFIRMED, CHANGED = range(5)
 """Event codes."""
@@ -41,20 +55,43 @@ EPOCH = np.dtype(
         ("speed", "f8"),  # m/s at its end
         ("mean_speed", "f8"),
         ("speed_change", "f8"),
+        ("speed_noise", "f8"),  # m/s, per horizontal axis
         ("course", "f8"),  # rad at its end, nan = not trusted
         ("yaw_rate", "f8"),  # rad/s from the course, nan = not known
         ("lateral", "f8"),  # m/s2, speed times yaw rate
-        ("climb", "f8"),  # m/s, nan = no altitude
+        ("altitude", "f8"),  # m as received, nan = none
+        ("vertical_speed", "f8"),  # m/s as received, nan = none
+        ("climb", "f8"),  # m/s from the smoothed altitude, nan = no altitude
         ("climb_height", "f8"),  # m gained
         ("grade", "f8"),  # sine of the slope
         ("moving", "?"),
         ("usable", "?"),
+        ("f_s", "f8", (3,)),  # mean specific force at the latency of the filter
+        ("w_s", "f8", (3,)),
+        ("f_slope", "f8", (3,)),  # its change with time, m/s3
+        ("w_slope", "f8", (3,)),
+        ("gyro", "?"),
+        ("next_speed", "f8"),  # of the fix that ends it and begins the next
+        ("next_course", "f8"),
+    ]
+)
+"""One epoch, the scratch record that passes from the clock to the stages."""
+
+MERGED = np.dtype(
+    [
+        ("start", "f8"),  # s
+        ("period", "f8"),  # s
+        ("mean_speed", "f8"),
+        ("speed_change", "f8"),
+        ("yaw_rate", "f8"),
+        ("lateral", "f8"),
+        ("grade", "f8"),
         ("f_s", "f8", (9, 3)),  # mean specific force, per latency hypothesis
         ("w_s", "f8", (9, 3)),
         ("gyro", "?"),
     ]
 )
-"""One epoch, the scratch record that passes from the clock to the stages."""
+"""The longer epoch of the coarse alignment."""
 
 
 # ---------------------------------------------------------------------------------------------------- rotations
@@ -84,6 +121,22 @@ def turn(q, x, y, z):
     q1 = w * q[1] + x * q[0] + y * q[3] - z * q[2]
     q2 = w * q[2] - x * q[3] + y * q[0] + z * q[1]
     q3 = w * q[3] + x * q[2] - y * q[1] + z * q[0]
+    n = 1.0 / math.sqrt(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3)
+    q[0] = q0 * n
+    q[1] = q1 * n
+    q[2] = q2 * n
+    q[3] = q3 * n
+
+
+@njit(cache=True, nogil=True)
+def turn_right(q, x, y, z):
+    """Q = q * dq(a): the Rodrigues vector a = (x, y, z) in the axes that q turns from."""
+    n = 1.0 / math.sqrt(4.0 + x * x + y * y + z * z)
+    w, x, y, z = 2 * n, x * n, y * n, z * n
+    q0 = q[0] * w - q[1] * x - q[2] * y - q[3] * z
+    q1 = q[0] * x + q[1] * w + q[2] * z - q[3] * y
+    q2 = q[0] * y - q[1] * z + q[2] * w + q[3] * x
+    q3 = q[0] * z + q[1] * y - q[2] * x + q[3] * w
     n = 1.0 / math.sqrt(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3)
     q[0] = q0 * n
     q[1] = q1 * n
@@ -155,35 +208,78 @@ def push_point(c, t):
 
 
 @njit(cache=True, nogil=True)
-def integrate_sample(p, c, t, f_s, w_s):
-    """Take one IMU sample: trapezoidal integral, a point in the ring every 50 ms."""
-    no_gyro = 0.0
-    if not (math.isfinite(w_s[0]) and math.isfinite(w_s[1]) and math.isfinite(w_s[2])):
-        no_gyro = 1.0
-    dt = t - c["t"]
-    chained = dt <= p["epoch_max_sample_gap"]  # False for nan, the first sample of a session
-    if chained:
-        for j in range(3):
-            rate = 0.0 if no_gyro > 0 else w_s[j]
-            c["integral"][j] += 0.5 * dt * (c["f_s"][j] + f_s[j])
-            c["integral"][3 + j] += 0.5 * dt * (c["w_s"][j] + rate)
-        c["integral"][6] += 0.5 * dt * (c["no_gyro"] + no_gyro)
-    for j in range(3):
-        c["f_s"][j] = f_s[j]
-        c["w_s"][j] = 0.0 if no_gyro > 0 else w_s[j]
-    c["no_gyro"] = no_gyro
-    c["t"] = t
-    if not chained:
-        begin_chain(c, t)
-    elif t - c["ring_t"][c["ring_head"]] >= RING_SPACING:
-        push_point(c, t)
+def integrate(p, c, t, f_s, w_s, first, stop, counts):
+    """Take IMU samples up to `stop` or until a report is due; gives the index after the last one taken.
+
+    Trapezoidal integral, a point in the ring every 50 ms. Plain local numbers: this is where the time goes.
+    """
+    now, report, gap = c["t"], c["next_report"], p["epoch_max_sample_gap"]
+    point = c["ring_t"][c["ring_head"]] + RING_SPACING - 1e-9
+    fx, fy, fz = c["f_s"][0], c["f_s"][1], c["f_s"][2]
+    wx, wy, wz, blind = c["w_s"][0], c["w_s"][1], c["w_s"][2], c["no_gyro"]
+    total = c["integral"]
+    i = first
+    while i < stop:
+        time = t[i]
+        if time <= now:
+            counts[DUPLICATE_TIME if time == now else BEFORE_PREVIOUS] += 1
+            i += 1
+            continue
+        x, y, z = f_s[i, 0], f_s[i, 1], f_s[i, 2]
+        u, v, w = w_s[i, 0], w_s[i, 1], w_s[i, 2]
+        no_gyro = 0.0
+        if not math.isfinite(u + v + w):
+            u = v = w = 0.0
+            no_gyro = 1.0
+        half = 0.5 * (time - now)
+        chained = half <= 0.5 * gap  # False for nan, the first sample of a session
+        if chained:
+            total[0] += half * (fx + x)
+            total[1] += half * (fy + y)
+            total[2] += half * (fz + z)
+            total[3] += half * (wx + u)
+            total[4] += half * (wy + v)
+            total[5] += half * (wz + w)
+            total[6] += half * (blind + no_gyro)
+            if x == fx or y == fy or z == fz:
+                watch_repeats(c, x == fx, y == fy, z == fz, x, y, z)
+            else:
+                c["repeats"][:] = 0
+        fx, fy, fz, wx, wy, wz, blind, now = x, y, z, u, v, w, no_gyro, time
+        if not chained:
+            begin_chain(c, time)
+            point = time + RING_SPACING - 1e-9
+        elif time >= point:
+            push_point(c, time)
+            point = time + RING_SPACING - 1e-9
+        i += 1
+        if not time < report:
+            break
+    c["t"], c["no_gyro"] = now, blind
+    c["f_s"][0], c["f_s"][1], c["f_s"][2] = fx, fy, fz
+    c["w_s"][0], c["w_s"][1], c["w_s"][2] = wx, wy, wz
+    return i
+
+
+@njit(cache=True, nogil=True)
+def watch_repeats(c, same_x, same_y, same_z, x, y, z):
+    """Count how long each axis repeats itself, and the samples that rest at the end of the range."""
+    c["repeats"][0] = c["repeats"][0] + 1 if same_x else 0
+    c["repeats"][1] = c["repeats"][1] + 1 if same_y else 0
+    c["repeats"][2] = c["repeats"][2] + 1 if same_z else 0
+    rest = (
+        (c["repeats"][0] >= FLAT_TOP and abs(x) > SATURATION_LEVEL)
+        or (c["repeats"][1] >= FLAT_TOP and abs(y) > SATURATION_LEVEL)
+        or (c["repeats"][2] >= FLAT_TOP and abs(z) > SATURATION_LEVEL)
+    )
+    if rest:
+        c["flat_tops"] += 1
 
 
 @njit(cache=True, nogil=True)
 def integral_at(c, t, out):
     """Integral at time t, linear between the points of the ring; False when t is not covered."""
-    size = c["ring_t"].shape[0]
-    head = c["ring_head"]
+    size, head, count = c["ring_t"].shape[0], c["ring_head"], c["ring_count"]
     newest = c["ring_t"][head]
     if t >= newest:
         span = c["t"] - newest
@@ -191,36 +287,55 @@ def integral_at(c, t, out):
         for j in range(7):
             out[j] = c["ring"][head, j] + weight * (c["integral"][j] - c["ring"][head, j])
         return True
-    later = head
-    for i in range(1, c["ring_count"]):
-        earlier = (head - i) % size
-        if c["ring_t"][earlier] <= t:
-            weight = (t - c["ring_t"][earlier]) / (c["ring_t"][later] - c["ring_t"][earlier])
-            for j in range(7):
-                out[j] = c["ring"][earlier, j] + weight * (c["ring"][later, j] - c["ring"][earlier, j])
-            return True
-        later = earlier
-    return False
+    back = min(int((newest - t) / RING_SPACING) + 1, count - 1)  # points are at least so far apart
+    if c["ring_t"][(head - back) % size] > t:
+        return False
+    while back > 1 and c["ring_t"][(head - back + 1) % size] <= t:
+        back -= 1
+    earlier, later = (head - back) % size, (head - back + 1) % size
+    weight = (t - c["ring_t"][earlier]) / (c["ring_t"][later] - c["ring_t"][earlier])
+    for j in range(7):
+        out[j] = c["ring"][earlier, j] + weight * (c["ring"][later, j] - c["ring"][earlier, j])
+    return True
 
 
 @njit(cache=True, nogil=True)
-def mean_signals(p, c, e, start, end, scratch):
-    """Mean specific force and angular rate of [start, end], per latency hypothesis; False when not covered."""
+def mean_signals(c, start, end, delay, f_s, w_s, scratch):
+    """Mean specific force and angular rate of [start, end] that many seconds ago: False when not covered.
+
+    The end is now; for no delay the integral at the fix that began the epoch is known exactly.
+    """
     begin, stop = scratch[0], scratch[1]
-    missing = 0.0
-    for i in range(p["epoch_latency_count"]):
-        shift = i * p["epoch_latency_step"]
-        if i == 0:
-            begin[:7] = c["fix_integral"]
-            stop[:7] = c["integral"]
-        elif not (integral_at(c, start - shift, begin) and integral_at(c, end - shift, stop)):
-            return False
-        for j in range(3):
-            e["f_s"][i, j] = (stop[j] - begin[j]) / (end - start)
-            e["w_s"][i, j] = (stop[3 + j] - begin[3 + j]) / (end - start)
-        missing += stop[6] - begin[6]
-    e["gyro"] = missing == 0.0
+    if delay == 0.0 and start == c["fix_t"]:
+        begin[:7] = c["fix_integral"]
+        stop[:7] = c["integral"]
+    elif not (integral_at(c, start - delay, begin) and integral_at(c, end - delay, stop)):
+        return False
+    for j in range(3):
+        f_s[j] = (stop[j] - begin[j]) / (end - start)
+        w_s[j] = (stop[3 + j] - begin[3 + j]) / (end - start)
+    scratch[0, 7] = stop[6] - begin[6]
     return True
+
+
+@njit(cache=True, nogil=True)
+def delayed_signals(p, c, delay, e, scratch):
+    """Mean signals of the epoch at the latency `delay` and how they change with it; False when not covered."""
+    start, end = e["t"] - e["period"], e["t"]
+    low, high = max(delay - SLOPE_STEP, 0.0), delay + SLOPE_STEP
+    if p["epoch_latency_count"] > 1:
+        f_low, f_high, w_low, w_high = scratch[2][:3], scratch[3][:3], scratch[4][:3], scratch[5][:3]
+        if not (
+            mean_signals(c, start, end, low, f_low, w_low, scratch)
+            and mean_signals(c, start, end, high, f_high, w_high, scratch)
+        ):
+            return False
+        for i in range(3):
+            e["f_slope"][i] = (f_low[i] - f_high[i]) / (high - low)
+            e["w_slope"][i] = (w_low[i] - w_high[i]) / (high - low)
+    covered = mean_signals(c, start, end, delay, e["f_s"], e["w_s"], scratch)
+    e["gyro"] = scratch[0, 7] == 0.0 and math.isfinite(p["filter_gyro_noise"])
+    return covered
 
 
 @njit(cache=True, nogil=True)
@@ -243,6 +358,19 @@ def velocity_of_fix(p, c, t, fix, velocity):
     velocity[0] = speed
     velocity[1] = course
     return math.isfinite(speed)
+
+
+@njit(cache=True, nogil=True)
+def stated_noise(p, fix):
+    """Velocity noise per horizontal axis, m/s: what the receiver states, within reason, else the usual one."""
+    along, across = fix[6], fix[7] * fix[3]
+    if not math.isfinite(along):
+        along = across
+    if not math.isfinite(across):
+        across = along
+    if not math.isfinite(along):
+        return p["filter_speed_noise"]
+    return min(max(math.sqrt(0.5 * (along * along + across * across)), 0.5 * p["filter_speed_noise"]), 10.0)
 
 
 @njit(cache=True, nogil=True)
@@ -290,10 +418,11 @@ def start_epoch(c, t, speed, course):
     c["fix_course"] = course
     c["fix_altitude"] = c["altitude"]
     c["fix_integral"][:] = c["integral"]
+    c["flat_tops"] = 0
 
 
 @njit(cache=True, nogil=True)
-def describe_epoch(p, c, e, t, speed, course):
+def describe_epoch(p, c, e, t, speed, course, fix):
     """Kinematics between the fix that began the epoch and this one; False when it is a jump."""
     period = t - c["fix_t"]
     e["t"] = t
@@ -301,6 +430,7 @@ def describe_epoch(p, c, e, t, speed, course):
     e["speed"] = speed
     e["mean_speed"] = 0.5 * (speed + c["fix_speed"])
     e["speed_change"] = speed - c["fix_speed"]
+    e["speed_noise"] = stated_noise(p, fix)
     slow = min(speed, c["fix_speed"]) < p["epoch_moving_speed"]
     e["moving"] = not slow
     e["course"] = np.nan if (slow and not p["filter_low_speed_course"]) else course
@@ -308,6 +438,8 @@ def describe_epoch(p, c, e, t, speed, course):
     if slow and not p["filter_low_speed_course"]:
         e["yaw_rate"] = np.nan
     e["lateral"] = e["mean_speed"] * e["yaw_rate"]
+    e["altitude"] = fix[2]
+    e["vertical_speed"] = fix[5]
     e["climb"] = c["climb"] if math.isfinite(c["altitude"]) else np.nan
     e["climb_height"] = c["altitude"] - c["fix_altitude"]
     e["grade"] = 0.0
@@ -321,58 +453,65 @@ def describe_epoch(p, c, e, t, speed, course):
 
 @njit(cache=True, nogil=True)
 def take_fix(p, c, e, t, fix, counts, scratch):
-    """Turn a valid fix into an epoch; True when `e` holds one."""
+    """Turn a valid fix into an epoch: whether one has ended, and whether `e` holds it whole."""
     c["valid_fix_t"] = t
     velocity = scratch[2]
     if not velocity_of_fix(p, c, t, fix, velocity):
         counts[FIX_WITHOUT_VELOCITY] += 1
-        return False
+        return NO_EPOCH
     speed, course = velocity[0], velocity[1]
     if speed < 0 or speed > p["epoch_max_speed"]:
         counts[FIX_IMPLAUSIBLE] += 1
-        return False
+        return NO_EPOCH
     period = t - c["fix_t"]
     if period < p["epoch_min_epoch"]:
-        return False
+        return NO_EPOCH
     smooth_altitude(p, c, t, fix)
     watch_direction(p, c, speed, course)
     if speed >= p["epoch_moving_speed"]:
         c["motion_t"] = t
     complete = False
     if period <= p["epoch_max_epoch"]:
-        complete = describe_epoch(p, c, e, t, speed, course)
+        complete = describe_epoch(p, c, e, t, speed, course, fix)
         if not complete:
             counts[FIX_IMPLAUSIBLE] += 1
-        complete = complete and mean_signals(p, c, e, c["fix_t"], t, scratch)
-        e["usable"] = complete and not c["reversing"]
-    start_epoch(c, t, speed, course)
-    return complete
+        e["usable"] = complete and not c["reversing"] and c["flat_tops"] == 0
+    e["next_speed"] = speed
+    e["next_course"] = course
+    return COMPLETE if complete else BROKEN
 
 
 # ------------------------------------------------------------------------------------------------ coarse alignment
 
 
 @njit(cache=True, nogil=True)
-def merge_epoch(p, m, e):
-    """Merge an epoch into the longer one `m` that the coarse alignment uses; True when that is long enough.
+def merge_epoch(p, c, x, e, scratch):
+    """Merge an epoch into the longer one `x` that the coarse alignment uses; True when that is complete.
 
     The noise of a speed difference counts less the longer the epoch, and driving shows little above 1 Hz.
     """
-    if m["period"] >= p["coarse_min_epoch"]:
-        m["period"] = 0.0
-    before = m["period"] / (m["period"] + e["period"])
-    m["speed_change"] = (m["speed_change"] if before > 0 else 0.0) + e["speed_change"]
-    m["period"] += e["period"]
-    m["mean_speed"] = mixed(before, m["mean_speed"], e["mean_speed"])
-    m["yaw_rate"] = mixed(before, m["yaw_rate"], e["yaw_rate"])
-    m["lateral"] = mixed(before, m["lateral"], e["lateral"])
-    m["grade"] = mixed(before, m["grade"], e["grade"])
-    m["gyro"] = e["gyro"] and (m["gyro"] or before == 0)
+    if x["period"] >= p["coarse_min_epoch"]:
+        x["period"] = 0.0
+    if x["period"] == 0.0:
+        x["start"] = e["t"] - e["period"]
+        x["speed_change"] = 0.0
+    before = x["period"] / (x["period"] + e["period"])
+    x["speed_change"] += e["speed_change"]
+    x["period"] += e["period"]
+    x["mean_speed"] = mixed(before, x["mean_speed"], e["mean_speed"])
+    x["yaw_rate"] = mixed(before, x["yaw_rate"], e["yaw_rate"])
+    x["lateral"] = mixed(before, x["lateral"], e["lateral"])
+    x["grade"] = mixed(before, x["grade"], e["grade"])
+    if x["period"] < p["coarse_min_epoch"]:
+        return False
+    missing = 0.0
     for h in range(p["epoch_latency_count"]):
-        for i in range(3):
-            m["f_s"][h, i] = mixed(before, m["f_s"][h, i], e["f_s"][h, i])
-            m["w_s"][h, i] = mixed(before, m["w_s"][h, i], e["w_s"][h, i])
-    return m["period"] >= p["coarse_min_epoch"]
+        delay = h * p["epoch_latency_step"]
+        if not mean_signals(c, x["start"], e["t"], delay, x["f_s"][h], x["w_s"][h], scratch):
+            return False
+        missing += scratch[0, 7]
+    x["gyro"] = missing == 0.0
+    return True
 
 
 @njit(cache=True, nogil=True)
@@ -382,41 +521,45 @@ def mixed(share, x, y):
 
 
 @njit(cache=True, nogil=True)
-def accumulate(p, a, e, k):
-    """Add an epoch in motion to the sums: kinematic specific force k_v against mean specific force."""
-    weight = e["period"]
-    k[0] = e["speed_change"] / e["period"] + GRAVITY * e["grade"]
-    k[1] = e["lateral"]
+def kinematics(x, k):
+    """Kinematic specific force k_v of an epoch in motion."""
+    k[0] = x["speed_change"] / x["period"] + GRAVITY * x["grade"]
+    k[1] = x["lateral"]
     k[2] = GRAVITY
-    gyro = e["gyro"] and math.isfinite(p["coarse_gyro_noise_density"])
+
+
+@njit(cache=True, nogil=True)
+def accumulate(p, a, x, k, first, count):
+    """Add an epoch in motion to the sums, for the latency hypotheses from `first` on."""
+    weight = x["period"]
     a["time"] += weight
     for i in range(3):
         a["k"][i] += weight * k[i]
         for j in range(3):
             a["kk"][i, j] += weight * k[i] * k[j]
-    for h in range(p["epoch_latency_count"]):
+    for h in range(first, first + count):
         for i in range(3):
-            f = e["f_s"][h, i]
+            f = x["f_s"][h, i]
             a["f"][h, i] += weight * f
             a["ff"][h] += weight * f * f
             for j in range(3):
                 a["fk"][h, i, j] += weight * f * k[j]
-    if gyro:
-        accumulate_gyro(p, a, e, weight)
+    if x["gyro"] and math.isfinite(p["coarse_gyro_noise_density"]):
+        accumulate_gyro(p, a, x, weight, first, count)
 
 
 @njit(cache=True, nogil=True)
-def accumulate_gyro(p, a, e, weight):
+def accumulate_gyro(p, a, x, weight, first, count):
     """Add the pair angular rate, yaw rate from the course, which is the noisier the slower the vehicle."""
-    rate = e["yaw_rate"]
-    course_noise = 2 * (p["filter_speed_noise"] / e["mean_speed"]) ** 2 / e["period"]
+    rate = x["yaw_rate"]
+    course_noise = 2 * (p["filter_speed_noise"] / x["mean_speed"]) ** 2 / x["period"]
     weight *= p["coarse_gyro_noise_density"] / (p["coarse_gyro_noise_density"] + course_noise)
     a["gyro_time"] += weight
     a["r"] += weight * rate
     a["rr"] += weight * rate * rate
-    for h in range(p["epoch_latency_count"]):
+    for h in range(first, first + count):
         for i in range(3):
-            w = e["w_s"][h, i]
+            w = x["w_s"][h, i]
             a["w"][h, i] += weight * w
             a["wr"][h, i] += weight * w * rate
             a["ww"][h] += weight * w * w
@@ -461,9 +604,8 @@ def profile_matrix(a, h, prior, noise, gyro_noise, b):
 
 
 @njit(cache=True, nogil=True)
-def best_rotation(b, q):
-    """Wahba's problem by Horn's quaternion: k ~ R(q) f for b = sum f k'; gives the largest eigenvalue."""
-    n = np.empty((4, 4))
+def horn_matrix(b, n):
+    """Horn's symmetric 4x4 matrix of B: the quaternion with k ~ R(q) f is its eigenvector of the largest eigenvalue."""
     n[0, 0] = b[0, 0] + b[1, 1] + b[2, 2]
     n[1, 1] = b[0, 0] - b[1, 1] - b[2, 2]
     n[2, 2] = -b[0, 0] + b[1, 1] - b[2, 2]
@@ -474,11 +616,105 @@ def best_rotation(b, q):
     n[1, 2] = n[2, 1] = b[0, 1] + b[1, 0]
     n[1, 3] = n[3, 1] = b[2, 0] + b[0, 2]
     n[2, 3] = n[3, 2] = b[1, 2] + b[2, 1]
-    values, vectors = np.linalg.eigh(n)
-    sign = -1.0 if vectors[0, 3] < 0 else 1.0
+
+
+@njit(cache=True, nogil=True)
+def determinant3(a, b, c, d, e, f, g, h, i):
+    """Determinant of a 3x3 matrix given row by row."""
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+
+
+@njit(cache=True, nogil=True)
+def largest_eigenvalue(b, n):
+    """Largest eigenvalue of Horn's matrix, by Newton's method on its characteristic polynomial (QUEST).
+
+    l^4 - 2 |B|^2 l^2 - 8 det(B) l + det(N); from above, where the method descends to the largest root.
+    """
+    square = 0.0
+    for i in range(3):
+        for j in range(3):
+            square += b[i, j] * b[i, j]
+    if square <= 0.0:
+        return 0.0
+    det = determinant3(b[0, 0], b[0, 1], b[0, 2], b[1, 0], b[1, 1], b[1, 2], b[2, 0], b[2, 1], b[2, 2])
+    constant = 0.0
     for i in range(4):
-        q[i] = sign * vectors[i, 3]
-    return values[3]
+        constant += n[0, i] * cofactor(n, 0, i, 0.0)
+    value = math.sqrt(3.0 * square)
+    for _ in range(60):
+        slope = 4 * value * (value * value - square) - 8 * det
+        height = ((value * value - 2 * square) * value - 8 * det) * value + constant
+        if slope <= 0.0:
+            break
+        step = height / slope
+        value -= step
+        if abs(step) < 1e-14 * value:
+            break
+    return value
+
+
+@njit(cache=True, nogil=True)
+def cofactor(n, row, column, value):
+    """Cofactor of N - value * 1."""
+    m = np.empty((3, 3))
+    r = 0
+    for i in range(4):
+        if i == row:
+            continue
+        c = 0
+        for j in range(4):
+            if j == column:
+                continue
+            m[r, c] = n[i, j] - (value if i == j else 0.0)
+            c += 1
+        r += 1
+    det = determinant3(m[0, 0], m[0, 1], m[0, 2], m[1, 0], m[1, 1], m[1, 2], m[2, 0], m[2, 1], m[2, 2])
+    return -det if (row + column) % 2 else det
+
+
+@njit(cache=True, nogil=True)
+def best_rotation(b, q):
+    """Wahba's problem: k ~ R(q) f for B = sum f k'; gives the largest eigenvalue.
+
+    The eigenvector is the column of the adjugate of N - l 1 with the largest diagonal.
+    """
+    n = np.empty((4, 4))
+    horn_matrix(b, n)
+    value = largest_eigenvalue(b, n)
+    column, largest = 0, -1.0
+    for i in range(4):
+        size = abs(cofactor(n, i, i, value))
+        if size > largest:
+            column, largest = i, size
+    norm = 0.0
+    for i in range(4):
+        q[i] = cofactor(n, i, column, value)
+        norm += q[i] * q[i]
+    if norm <= 0.0:
+        q[:] = 0.0
+        q[0] = norm = 1.0
+    scale = (-1.0 if q[0] < 0 else 1.0) / math.sqrt(norm)
+    for i in range(4):
+        q[i] *= scale
+    return value
+
+
+@njit(cache=True, nogil=True)
+def mirror_evidence(a, h, prior, noise, b):
+    """How much better a mirror image explains the accelerations than any rotation does: log of the likelihood ratio.
+
+    The best reflection gains -tr from the smallest eigenvalue of Horn's matrix where the best rotation gains tr from
+    the largest; their sum is twice the smallest singular value of B with the sign of det(B).
+    """
+    profile_matrix(a, h, prior, noise, np.inf, b)
+    n = np.empty((4, 4))
+    horn_matrix(b, n)
+    rotation = largest_eigenvalue(b, n)
+    for i in range(3):
+        for j in range(3):
+            b[i, j] = -b[i, j]
+    horn_matrix(b, n)
+    return largest_eigenvalue(b, n) - rotation
 
 
 @njit(cache=True, nogil=True)
@@ -574,7 +810,7 @@ def solve_coarse(p, a, b, choose):
 @njit(cache=True, nogil=True)
 def update_coarse(p, a, e, k, b):
     """Accumulate an epoch in motion and solve again once in a while; True when there is a new solution."""
-    accumulate(p, a, e, k)
+    accumulate(p, a, e, k, 0, p["epoch_latency_count"])
     since = a["time"] - a["solved_time"]
     if a["time"] < p["coarse_min_time"] or since < p["coarse_interval"]:
         return False
@@ -596,28 +832,49 @@ def largest_sigma(covariance):
 
 
 @njit(cache=True, nogil=True)
-def add_process_noise(p, cov, period, speed, yaw_rate):
-    """Q of (4.63)-(4.70); per-step noises of the thesis scaled to the length of the epoch."""
-    steps = period / REFERENCE_PERIOD
-    sigma = p["filter_acceleration_noise"]
-    cross = sigma * period**2 * p["filter_cross_noise_factor"]
-    cov[SPEED, SPEED] += sigma * period**3 * p["filter_speed_noise_factor"]
-    cov[SPEED, ACCELERATION] += cross
-    cov[ACCELERATION, SPEED] += cross
+def add_thesis_noise(p, m, cov, period):
+    """Noises gated by speed and yaw rate and the Wiener-process cross terms, (4.63) and (4.66)-(4.70)."""
+    sigma, steps = p["filter_acceleration_noise"], period / REFERENCE_PERIOD
+    speed, rate = m["speed"] ** 2 * steps, m["yaw_rate"] ** 2 * steps
+    cov[SPEED, SPEED] += sigma * period**3 / 3
+    cov[SPEED, ACCELERATION] += sigma * period**2 / 2
+    cov[ACCELERATION, SPEED] += sigma * period**2 / 2
     cov[ACCELERATION, ACCELERATION] += sigma * period
-    cov[YAW_RATE, YAW_RATE] += (
-        p["filter_yaw_rate_noise"] * period + p["filter_yaw_rate_noise_per_speed"] * speed**2 * steps
-    )
-    decay = math.exp(-period / p["filter_tilt_time_constant"])
-    tilt = (1 - decay * decay) * p["filter_tilt_sigma"] ** 2
-    attitude = p["filter_attitude_noise_per_yaw_rate"] * yaw_rate**2 * steps
-    cov[ATTITUDE, ATTITUDE] += attitude + tilt
-    cov[ATTITUDE + 1, ATTITUDE + 1] += attitude + tilt
-    cov[ATTITUDE + 2, ATTITUDE + 2] += attitude + p["filter_heading_noise"] * period
-    mounting = p["filter_mounting_noise_per_yaw_rate"] * yaw_rate**2 * steps + p["filter_mounting_noise"] * period
+    cov[YAW_RATE, YAW_RATE] += p["filter_yaw_rate_noise_per_speed"] * speed
     for i in range(3):
-        cov[MOUNTING + i, MOUNTING + i] += mounting
+        cov[ATTITUDE + i, ATTITUDE + i] += p["filter_attitude_noise_per_yaw_rate"] * rate
+        cov[MOUNTING + i, MOUNTING + i] += p["filter_mounting_noise_per_yaw_rate"] * rate
+
+
+@njit(cache=True, nogil=True)
+def add_motion_noise(p, cov, period):
+    """Acceleration and yaw rate take new values, which hold over the epoch, so that they are its means."""
+    cov[ACCELERATION, ACCELERATION] += p["filter_acceleration_noise"] * period
+    cov[YAW_RATE, YAW_RATE] += p["filter_yaw_rate_noise"] * period
+
+
+@njit(cache=True, nogil=True)
+def add_slow_noise(p, m, cov, period, distance):
+    """What drifts with time, and the road, which changes with the distance driven."""
+    cov[ATTITUDE + 2, ATTITUDE + 2] += p["filter_heading_noise"] * period
+    cov[ALTITUDE, ALTITUDE] += p["filter_altitude_drift"] * period
+    cov[LATENCY, LATENCY] += p["filter_latency_noise"] * period
+    for i in range(3):
+        cov[MOUNTING + i, MOUNTING + i] += p["filter_mounting_noise"] * period
         cov[BIAS + i, BIAS + i] += p["filter_bias_noise"] * period
+        cov[GYRO_BIAS + i, GYRO_BIAS + i] += p["filter_gyro_bias_noise"] * period
+    for axis in range(2):
+        sigma = math.sqrt(m["road_variance"][axis])
+        curve = 1 / (p["filter_bank_length"] if axis == 0 else p["filter_grade_length"])
+        x = curve * distance
+        decay = math.exp(-2 * x)
+        i, j = ATTITUDE + axis, GRADIENT + axis
+        # stationary covariance minus what the transition leaves of it
+        cov[i, i] += sigma**2 * (1 - decay * ((1 + x) ** 2 + x**2))
+        cross = sigma**2 * decay * 2 * x**2 * curve
+        cov[i, j] += cross
+        cov[j, i] += cross
+        cov[j, j] += (sigma * curve) ** 2 * (1 - decay * (x**2 + (1 - x) ** 2))
 
 
 @njit(cache=True, nogil=True)
@@ -631,39 +888,74 @@ def set_heading(m, course):
 
 
 @njit(cache=True, nogil=True)
-def begin_motion(p, m, speed, course):
-    """Forget the motion and the attitude of the vehicle, keep mounting and biases: start, outage, reversing."""
-    m["speed"] = speed
-    m["acceleration"] = 0.0
-    m["yaw_rate"] = 0.0
-    set_heading(m, course)
-    cov = m["covariance"]
-    for i in range(MOUNTING):
+def clear_state(cov, first, last):
+    """Take the uncertainty of the states [first, last) and their correlation with all others out."""
+    for i in range(first, last):
         for j in range(cov.shape[0]):
             cov[i, j] = 0.0
             cov[j, i] = 0.0
-    cov[SPEED, SPEED] = (2 * p["filter_speed_noise"]) ** 2
+
+
+@njit(cache=True, nogil=True)
+def begin_motion(p, m, e):
+    """Forget the motion and the attitude of the vehicle, keep mounting and biases: start, outage, reversing."""
+    speed = e["speed"]
+    m["speed"] = speed
+    m["acceleration"] = 0.0
+    m["yaw_rate"] = 0.0
+    m["gradient"][:] = 0.0
+    m["last_yaw_rate"] = m["last_forward"] = m["last_lateral"] = 0.0
+    set_heading(m, e["course"])
+    cov = m["covariance"]
+    clear_state(cov, 0, MOUNTING)
+    noise = e["speed_noise"]
+    cov[SPEED, SPEED] = (2 * noise) ** 2
     cov[ACCELERATION, ACCELERATION] = 1.0
     cov[YAW_RATE, YAW_RATE] = 0.1**2
-    cov[ATTITUDE, ATTITUDE] = cov[ATTITUDE + 1, ATTITUDE + 1] = p["filter_tilt_sigma"] ** 2
-    cov[ATTITUDE + 2, ATTITUDE + 2] = (2 * p["filter_speed_noise"] / max(speed, 0.5)) ** 2
+    cov[ATTITUDE, ATTITUDE] = m["road_variance"][0]
+    cov[ATTITUDE + 1, ATTITUDE + 1] = m["road_variance"][1]
+    cov[ATTITUDE + 2, ATTITUDE + 2] = (2 * noise / max(speed, 0.5)) ** 2
+    cov[GRADIENT, GRADIENT] = m["road_variance"][0] / p["filter_bank_length"] ** 2
+    cov[GRADIENT + 1, GRADIENT + 1] = m["road_variance"][1] / p["filter_grade_length"] ** 2
+    begin_altitude(m, np.nan, 0.0)
     m["aligned"] = True
 
 
 @njit(cache=True, nogil=True)
-def start_from_coarse(p, m, a, speed, course):
-    """Start the filter at the coarse alignment."""
+def begin_altitude(m, altitude, sigma):
+    """Take the altitude as it is given: only its changes count."""
+    m["altitude"] = altitude
+    clear_state(m["covariance"], ALTITUDE, ALTITUDE + 1)
+    m["covariance"][ALTITUDE, ALTITUDE] = sigma**2
+
+
+@njit(cache=True, nogil=True)
+def start_from_coarse(p, m, a, e):
+    """Start the filter at the coarse alignment, everything else at its prior."""
     cov = m["covariance"]
     cov[:] = 0.0
     m["q_vs"][:] = a["q_vs"]
     m["bias"][:] = a["bias"]
     m["gyro_bias"][:] = 0.0
-    begin_motion(p, m, speed, course)
+    m["lever_arm"][0] = p["filter_lever_arm"]
+    m["lever_arm"][1] = 0.0
+    m["antenna"] = 0.0
+    m["latency"] = a["latency"]
+    m["suspension"][0] = p["filter_pitch_per_acceleration"]
+    m["suspension"][1] = p["filter_roll_per_acceleration"]
+    m["road_variance"][0] = p["filter_bank_sigma"] ** 2
+    m["road_variance"][1] = p["filter_grade_sigma"] ** 2
+    begin_motion(p, m, e)
     for i in range(3):
         for j in range(3):
-            cov[MOUNTING + i, MOUNTING + j] = a["covariance"][i, j]
+            cov[MOUNTING + i, MOUNTING + j] = p["filter_start_inflation"] ** 2 * a["covariance"][i, j]
         cov[BIAS + i, BIAS + i] = p["filter_bias_sigma"] ** 2
         cov[GYRO_BIAS + i, GYRO_BIAS + i] = p["filter_gyro_bias_sigma"] ** 2
+    for i in range(2):
+        cov[LEVER_ARM + i, LEVER_ARM + i] = p["filter_lever_arm_sigma"] ** 2
+        cov[SUSPENSION + i, SUSPENSION + i] = p["filter_suspension_sigma"] ** 2
+    cov[ANTENNA, ANTENNA] = p["filter_antenna_sigma"] ** 2
+    cov[LATENCY, LATENCY] = p["filter_latency_sigma"] ** 2
     m["running"] = True
 
 
@@ -674,187 +966,349 @@ def start_at_identity(p, m):
     Heading north, and sensor axes along forward, right, down. The heading follows from the first course in motion.
     """
     m["covariance"][:] = 0.0
+    m["speed"] = 1.0
+    m["yaw_rate"] = 1.0
+    add_thesis_noise(p, m, m["covariance"], REFERENCE_PERIOD)
     m["speed"] = 0.0
     m["acceleration"] = 0.0
     m["yaw_rate"] = 0.0
     set_heading(m, 0.0)
     m["q_vs"][:] = 0.0
     m["q_vs"][1] = 1.0
-    add_process_noise(p, m["covariance"], REFERENCE_PERIOD, 1.0, 1.0)
     m["running"] = True
     m["aligned"] = False
 
 
 @njit(cache=True, nogil=True)
-def level_out(m, keep):
-    """Let roll and pitch of the vehicle decay towards level by the factor `keep`; the heading stays."""
+def road_transition(length, distance, f):
+    """Transition of an angle of the road and its gradient, critically damped over the distance."""
+    x = distance / length
+    decay = math.exp(-x)
+    f[0, 0] = decay * (1 + x)
+    f[0, 1] = decay * distance
+    f[1, 0] = -decay * x / length
+    f[1, 1] = decay * (1 - x)
+
+
+@njit(cache=True, nogil=True)
+def predict_state(p, m, period, distance, bank, grade):
+    """Prediction (4.37)-(4.51): speed, turn about the vertical, road under the vehicle, altitude."""
+    m["last_yaw_rate"] = m["yaw_rate"]
+    m["last_forward"] = m["acceleration"]
+    m["last_lateral"] = m["speed"] * m["yaw_rate"]
     r = np.empty((3, 3))
     rotation_matrix(m["q_nv"], r)
-    turn(m["q_nv"], (1 - keep) * r[1, 2], -(1 - keep) * r[0, 2], 0.0)
-
-
-@njit(cache=True, nogil=True)
-def predict(p, m, period):
-    """Prediction (4.37)-(4.51) with the turn folded into the reference attitude at once."""
-    cov = m["covariance"]
-    size = cov.shape[0]
-    angle = period * m["yaw_rate"]
-    keep = math.exp(-period / p["filter_tilt_time_constant"])
+    road_transition(p["filter_bank_length"], distance, bank)
+    road_transition(p["filter_grade_length"], distance, grade)
+    roll, pitch = math.asin(r[2, 1]), -math.asin(r[2, 0])
+    roll_step = (bank[0, 0] - 1) * roll + bank[0, 1] * m["gradient"][0]
+    pitch_step = (grade[0, 0] - 1) * pitch + grade[0, 1] * m["gradient"][1]
+    m["gradient"][0] = bank[1, 0] * roll + bank[1, 1] * m["gradient"][0]
+    m["gradient"][1] = grade[1, 0] * pitch + grade[1, 1] * m["gradient"][1]
     m["speed"] += period * m["acceleration"]
-    turn(m["q_nv"], 0.0, 0.0, angle)
-    if keep < 1:
-        level_out(m, keep)
-    cosine, sine = math.cos(angle), math.sin(angle)
-    for j in range(size):
-        x, y = cov[ATTITUDE, j], cov[ATTITUDE + 1, j]
-        cov[SPEED, j] += period * cov[ACCELERATION, j]
-        cov[ATTITUDE, j] = keep * (cosine * x - sine * y)
-        cov[ATTITUDE + 1, j] = keep * (sine * x + cosine * y)
-        cov[ATTITUDE + 2, j] += period * cov[YAW_RATE, j]
-    for i in range(size):
-        x, y = cov[i, ATTITUDE], cov[i, ATTITUDE + 1]
-        cov[i, SPEED] += period * cov[i, ACCELERATION]
-        cov[i, ATTITUDE] = keep * (cosine * x - sine * y)
-        cov[i, ATTITUDE + 1] = keep * (sine * x + cosine * y)
-        cov[i, ATTITUDE + 2] += period * cov[i, YAW_RATE]
-    add_process_noise(p, cov, period, m["speed"], m["yaw_rate"])
+    turn(m["q_nv"], 0.0, 0.0, period * m["yaw_rate"])
+    turn_right(m["q_nv"], roll_step, pitch_step, 0.0)
+    m["altitude"] += distance * r[2, 0]
 
 
 @njit(cache=True, nogil=True)
-def predict_measurements(m, z, h):
-    """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate."""
-    r_nv = np.empty((3, 3))
-    r_vs = np.empty((3, 3))
-    u = np.empty(3)
-    rotation_matrix(m["q_nv"], r_nv)
-    rotation_matrix(m["q_vs"], r_vs)
-    speed, rate = m["speed"], m["yaw_rate"]
-    u[0] = GRAVITY * r_nv[2, 0] + m["acceleration"]
-    u[1] = GRAVITY * r_nv[2, 1] + speed * rate
-    u[2] = GRAVITY * r_nv[2, 2]
-    h[:] = 0.0
+def transition_rows(cov, n, period, distance, up, bank, grade):
+    """F P for the transition F; `up` is the vertical in vehicle axes."""
+    for j in range(n):
+        cov[ALTITUDE, j] += period * up[0] * cov[SPEED, j] + distance * (
+            up[1] * cov[ATTITUDE + 2, j] - up[2] * cov[ATTITUDE + 1, j]
+        )
+        cov[SPEED, j] += period * cov[ACCELERATION, j]
+        turned = period * cov[YAW_RATE, j]
+        x, y = cov[ATTITUDE, j], cov[ATTITUDE + 1, j]
+        cx, cy = cov[GRADIENT, j], cov[GRADIENT + 1, j]
+        cov[ATTITUDE, j] = bank[0, 0] * x + bank[0, 1] * cx + up[0] * turned
+        cov[GRADIENT, j] = bank[1, 0] * x + bank[1, 1] * cx
+        cov[ATTITUDE + 1, j] = grade[0, 0] * y + grade[0, 1] * cy + up[1] * turned
+        cov[GRADIENT + 1, j] = grade[1, 0] * y + grade[1, 1] * cy
+        cov[ATTITUDE + 2, j] += up[2] * turned
+
+
+@njit(cache=True, nogil=True)
+def predict(p, m, period, n):
+    """Prediction of state and covariance over one epoch; the turn is folded into the reference attitude at once."""
+    cov = m["covariance"]
+    bank, grade, up, r = np.empty((2, 2)), np.empty((2, 2)), np.empty(3), np.empty((3, 3))
+    distance = period * m["speed"]
+    rotation_matrix(m["q_nv"], r)
+    up[:] = r[2, :]
+    if p["filter_constant_over_epoch"]:
+        add_motion_noise(p, cov, period)
+    predict_state(p, m, period, distance, bank, grade)
+    transition_rows(cov, n, period, distance, up, bank, grade)
+    transition_rows(cov.T, n, period, distance, up, bank, grade)
+    if not p["filter_constant_over_epoch"]:
+        add_thesis_noise(p, m, cov, period)
+    add_slow_noise(p, m, cov, period, distance)
+
+
+@njit(cache=True, nogil=True)
+def predict_force(m, period, share, up, force, jacobian):
+    """Specific force in vehicle axes and its Jacobian with respect to the states before MOUNTING and the slow ones.
+
+    Kinematic acceleration of the device by Rivals' formula (seed 004 eq. 4), gravity on the road's slope, and the body
+    leaning on its springs. `share` is the part of the epoch between its middle, which the means stand for, and its end.
+    """
+    rate, arm = m["yaw_rate"], m["lever_arm"]
+    spin = (rate - m["last_yaw_rate"]) / period
+    speed = m["speed"] - share * period * m["acceleration"]
+    curve = m["gradient"][1] if share > 0 else 0.0
+    forward = m["acceleration"] - rate * rate * arm[0] - spin * arm[1]
+    lateral = speed * rate + spin * arm[0] - rate * rate * arm[1]
+    dive, lean = m["suspension"][0], m["suspension"][1]
+    road = forward + GRAVITY * up[0]
+    side = lateral * up[2] + GRAVITY * up[1]
+    stiff = GRAVITY * up[2] - lateral * up[1] - speed * speed * curve
+    force[0] = road + stiff * dive * forward
+    force[1] = side + stiff * lean * lateral
+    force[2] = stiff - dive * forward * road - lean * lateral * side
+    d_forward, d_lateral = np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS)
+    d_road, d_side, d_stiff = np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS)
+    d_forward[ACCELERATION] = 1.0
+    d_forward[YAW_RATE] = -2 * rate * arm[0] - arm[1] / period
+    d_forward[LEVER_ARM] = -rate * rate
+    d_forward[LEVER_ARM + 1] = -spin
+    d_lateral[SPEED] = rate
+    d_lateral[ACCELERATION] = -share * period * rate
+    d_lateral[YAW_RATE] = speed - 2 * rate * arm[1] + arm[0] / period
+    d_lateral[LEVER_ARM] = spin
+    d_lateral[LEVER_ARM + 1] = -rate * rate
+    d_stiff[SPEED] = -2 * speed * curve
+    d_stiff[ACCELERATION] = 2 * speed * curve * share * period
+    d_stiff[GRADIENT + 1] = -speed * speed if share > 0 else 0.0
+    for i in range(3):  # d up = [up x] alpha
+        x, y, z = cross_column(up, i)
+        d_road[ATTITUDE + i] = GRAVITY * x
+        d_side[ATTITUDE + i] = GRAVITY * y + lateral * z
+        d_stiff[ATTITUDE + i] = GRAVITY * z - lateral * y
+    for j in range(GYRO_BIAS):
+        d_road[j] += d_forward[j]
+        d_side[j] += up[2] * d_lateral[j]
+        d_stiff[j] -= up[1] * d_lateral[j]
+        jacobian[0, j] = d_road[j] + dive * (stiff * d_forward[j] + forward * d_stiff[j])
+        jacobian[1, j] = d_side[j] + lean * (stiff * d_lateral[j] + lateral * d_stiff[j])
+        jacobian[2, j] = (
+            d_stiff[j]
+            - dive * (forward * d_road[j] + road * d_forward[j])
+            - lean * (lateral * d_side[j] + side * d_lateral[j])
+        )
+    jacobian[0, SUSPENSION] = stiff * forward
+    jacobian[1, SUSPENSION + 1] = stiff * lateral
+    jacobian[2, SUSPENSION] = -forward * road
+    jacobian[2, SUSPENSION + 1] = -lateral * side
+
+
+@njit(cache=True, nogil=True)
+def cross_column(u, i):
+    """Column i of [u x]."""
+    if i == 0:
+        return 0.0, u[2], -u[1]
+    if i == 1:
+        return -u[2], 0.0, u[0]
+    return u[1], -u[0], 0.0
+
+
+@njit(cache=True, nogil=True)
+def predict_rate(m, period, up, rate, jacobian):
+    """Angular rate in vehicle axes and its Jacobian: turn about the vertical, road and suspension about the level axes."""
+    speed, turning = m["speed"], m["yaw_rate"]
+    dive, lean = m["suspension"][0] / period, m["suspension"][1] / period
+    surge = m["acceleration"] - m["last_forward"]
+    sway = speed * turning - m["last_lateral"]
+    rate[0] = turning * up[0] + speed * m["gradient"][0] + lean * sway
+    rate[1] = turning * up[1] + speed * m["gradient"][1] - dive * surge
+    rate[2] = turning * up[2]
+    jacobian[:] = 0.0
+    jacobian[0, SPEED] = m["gradient"][0] + lean * turning
+    jacobian[1, SPEED] = m["gradient"][1]
+    jacobian[1, ACCELERATION] = -dive
+    jacobian[0, YAW_RATE] = up[0] + lean * speed
+    jacobian[1, YAW_RATE] = up[1]
+    jacobian[2, YAW_RATE] = up[2]
+    jacobian[0, GRADIENT] = speed
+    jacobian[1, GRADIENT + 1] = speed
+    jacobian[0, SUSPENSION + 1] = sway / period
+    jacobian[1, SUSPENSION] = -surge / period
+    for i in range(3):
+        x, y, z = cross_column(up, i)
+        jacobian[0, ATTITUDE + i] = turning * x
+        jacobian[1, ATTITUDE + i] = turning * y
+        jacobian[2, ATTITUDE + i] = turning * z
+
+
+@njit(cache=True, nogil=True)
+def to_sensor(r_vs, vector, jacobian, z, h):
+    """R_sv times a vector of the vehicle and its Jacobian, with the columns of the mounting."""
     for i in range(3):
         x, y, w = r_vs[0, i], r_vs[1, i], r_vs[2, i]
-        z[i] = x * u[0] + y * u[1] + w * u[2] + m["bias"][i]
-        h[i, SPEED] = y * rate
-        h[i, ACCELERATION] = x
-        h[i, YAW_RATE] = y * speed
-        for j in range(2):  # R_sn [g e_z x]
-            column = x * r_nv[1 - j, 0] + y * r_nv[1 - j, 1] + w * r_nv[1 - j, 2]
-            h[i, ATTITUDE + j] = GRAVITY * column * (1.0 if j == 0 else -1.0)
-        h[i, MOUNTING] = y * u[2] - w * u[1]
-        h[i, MOUNTING + 1] = w * u[0] - x * u[2]
-        h[i, MOUNTING + 2] = x * u[1] - y * u[0]
-        h[i, BIAS + i] = 1.0
-        z[7 + i] = w * rate + m["gyro_bias"][i]
-        h[7 + i, YAW_RATE] = w
-        h[7 + i, MOUNTING] = y * rate
-        h[7 + i, MOUNTING + 1] = -x * rate
-        h[7 + i, GYRO_BIAS + i] = 1.0
-        z[3 + i] = r_nv[i, 0] * speed
-        h[3 + i, SPEED] = r_nv[i, 0]
-    h[3, ATTITUDE + 1] = z[5]
-    h[3, ATTITUDE + 2] = -z[4]
-    h[4, ATTITUDE] = -z[5]
-    h[4, ATTITUDE + 2] = z[3]
-    h[5, ATTITUDE] = z[4]
-    h[5, ATTITUDE + 1] = -z[3]
-    z[6] = rate
-    h[6, YAW_RATE] = 1.0
-    z[10] = rate
-    h[10, YAW_RATE] = 1.0
+        z[i] = x * vector[0] + y * vector[1] + w * vector[2]
+        for j in range(GYRO_BIAS):
+            h[i, j] = x * jacobian[0, j] + y * jacobian[1, j] + w * jacobian[2, j]
+        h[i, MOUNTING] = y * vector[2] - w * vector[1]
+        h[i, MOUNTING + 1] = w * vector[0] - x * vector[2]
+        h[i, MOUNTING + 2] = x * vector[1] - y * vector[0]
 
 
 @njit(cache=True, nogil=True)
-def observe(p, e, f_s, w_s, y, noise):
+def predict_velocity(m, r_nv, z, h):
+    """Velocity of the antenna (4.59): the vehicle's, and what its turning adds sideways."""
+    speed, rate = m["speed"], m["yaw_rate"]
+    ahead = m["lever_arm"][0] + m["antenna"]
+    side = rate * ahead
+    for i in range(3):
+        x, y, w = r_nv[i, 0], r_nv[i, 1], r_nv[i, 2]
+        z[i] = x * speed + y * side
+        h[i, SPEED] = x
+        h[i, YAW_RATE] = y * ahead
+        h[i, LEVER_ARM] = y * rate
+        h[i, ANTENNA] = y * rate
+        h[i, ATTITUDE] = w * side
+        h[i, ATTITUDE + 1] = -w * speed
+        h[i, ATTITUDE + 2] = y * speed - x * side
+
+
+@njit(cache=True, nogil=True)
+def predict_measurements(p, m, e, z, h):
+    """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate, altitude."""
+    r_nv, r_vs = np.empty((3, 3)), np.empty((3, 3))
+    vector, jacobian = np.empty(3), np.empty((3, GYRO_BIAS))
+    rotation_matrix(m["q_nv"], r_nv)
+    rotation_matrix(m["q_vs"], r_vs)
+    up = r_nv[2]
+    h[:] = 0.0
+    predict_force(m, e["period"], p["filter_mean_share"], up, vector, jacobian)
+    to_sensor(r_vs, vector, jacobian, z[FORCE:], h[FORCE:])
+    predict_velocity(m, r_nv, z[VELOCITY:], h[VELOCITY:])
+    if e["gyro"]:
+        predict_rate(m, e["period"], up, vector, jacobian)
+        to_sensor(r_vs, vector, jacobian, z[RATE:], h[RATE:])
+    for i in range(3):
+        z[FORCE + i] += m["bias"][i]
+        h[FORCE + i, BIAS + i] = 1.0
+        h[FORCE + i, LATENCY] = e["f_slope"][i]
+        if e["gyro"]:
+            z[RATE + i] += m["gyro_bias"][i]
+            h[RATE + i, GYRO_BIAS + i] = 1.0
+            h[RATE + i, LATENCY] = e["w_slope"][i]
+    for row in (COURSE_RATE, STANDSTILL):
+        z[row] = m["yaw_rate"]
+        h[row, YAW_RATE] = 1.0
+    z[HEIGHT] = m["altitude"]
+    h[HEIGHT, ALTITUDE] = 1.0
+
+
+@njit(cache=True, nogil=True)
+def observe(p, m, e, y, noise):
     """Fill the measurements y and their standard deviations; infinite = not measured in this epoch."""
     noise[:] = np.inf
     y[:] = 0.0
     for i in range(3):
-        y[i] = f_s[i]
-        noise[i] = p["filter_accelerometer_noise"]
+        y[FORCE + i] = e["f_s"][i]
+        noise[FORCE + i] = p["filter_accelerometer_noise"]
     if math.isfinite(e["course"]):
-        y[3] = e["speed"] * math.sin(e["course"])
-        y[4] = e["speed"] * math.cos(e["course"])
-        noise[3] = noise[4] = p["filter_speed_noise"]
-    if math.isfinite(e["climb"]):
-        y[5] = e["climb"]
-        noise[5] = p["filter_climb_noise"]
+        y[VELOCITY] = e["speed"] * math.sin(e["course"])
+        y[VELOCITY + 1] = e["speed"] * math.cos(e["course"])
+        noise[VELOCITY] = noise[VELOCITY + 1] = e["speed_noise"]
+    if math.isfinite(e["vertical_speed"]):
+        y[VELOCITY + 2] = e["vertical_speed"]
+        noise[VELOCITY + 2] = p["filter_vertical_speed_noise"]
+    elif math.isfinite(e["climb"]):
+        y[VELOCITY + 2] = e["climb"]
+        noise[VELOCITY + 2] = p["filter_climb_noise"]
     if math.isfinite(e["yaw_rate"]):
-        y[6] = e["yaw_rate"]
-        noise[6] = p["filter_course_rate_noise"]
+        y[COURSE_RATE] = e["yaw_rate"]
+        noise[COURSE_RATE] = p["filter_course_rate_noise"]
     if e["gyro"]:
         for i in range(3):
-            y[7 + i] = w_s[i]
-            noise[7 + i] = p["filter_gyro_noise"]
+            y[RATE + i] = e["w_s"][i]
+            noise[RATE + i] = p["filter_gyro_noise"]
     if e["mean_speed"] < 0.3 * p["epoch_moving_speed"]:
-        noise[10] = p["filter_standstill_yaw_rate_noise"]
+        noise[STANDSTILL] = p["filter_standstill_yaw_rate_noise"]
+    if math.isfinite(e["altitude"]) and math.isfinite(m["altitude"]):
+        y[HEIGHT] = e["altitude"]
+        noise[HEIGHT] = p["filter_altitude_noise"]
 
 
 @njit(cache=True, nogil=True)
-def update(p, m, e, f_s, w_s):
+def update(p, m, e, n):
     """Update (4.18)-(4.23): scalar after scalar about one point of linearisation, the same as all at once."""
     cov = m["covariance"]
-    size = cov.shape[0]
     z, y, noise = np.empty(MEASUREMENTS), np.empty(MEASUREMENTS), np.empty(MEASUREMENTS)
-    h = np.empty((MEASUREMENTS, size))
-    dx, ph = np.zeros(size), np.empty(size)
-    predict_measurements(m, z, h)
-    observe(p, e, f_s, w_s, y, noise)
-    if not math.isfinite(noise[3]):  # no course: the speed alone, along the vehicle
-        h[3, :] = 0.0
-        h[3, SPEED] = 1.0
-        y[3], z[3], noise[3] = e["speed"], m["speed"], p["filter_speed_noise"]
+    h = np.empty((MEASUREMENTS, STATES))
+    dx, ph = np.zeros(STATES), np.empty(STATES)
+    predict_measurements(p, m, e, z, h)
+    observe(p, m, e, y, noise)
+    if not math.isfinite(noise[VELOCITY]):  # no course: the speed alone, along the vehicle
+        h[VELOCITY, :] = 0.0
+        h[VELOCITY, SPEED] = 1.0
+        y[VELOCITY], z[VELOCITY], noise[VELOCITY] = e["speed"], m["speed"], e["speed_noise"]
     for row in range(MEASUREMENTS):
         if not math.isfinite(noise[row]):
             continue
         innovation = y[row] - z[row]
         variance = 0.0
-        for i in range(size):
-            total = 0.0
-            for j in range(size):
-                total += cov[i, j] * h[row, j]
-            ph[i] = total
-            innovation -= h[row, i] * dx[i]
-            variance += h[row, i] * total
+        ph[:] = 0.0
+        for j in range(n):
+            if h[row, j] != 0.0:
+                innovation -= h[row, j] * dx[j]
+                for i in range(n):
+                    ph[i] += h[row, j] * cov[j, i]
+        for j in range(n):
+            variance += h[row, j] * ph[j]
         total = variance + noise[row] ** 2
         if innovation * innovation > p["filter_gate"] ** 2 * total:
             total = innovation * innovation / p["filter_gate"] ** 2
-        for i in range(size):
-            dx[i] += ph[i] * innovation / total
-            for j in range(i + 1):
-                cov[i, j] -= ph[i] * ph[j] / total
-                cov[j, i] = cov[i, j]
-    fold(m, dx)
+        for i in range(n):
+            gain = ph[i] / total
+            dx[i] += gain * innovation
+            for j in range(n):
+                cov[i, j] -= gain * ph[j]
+    fold(p, m, dx)
+    if not math.isfinite(m["altitude"]) and math.isfinite(e["altitude"]) and math.isfinite(p["filter_altitude_noise"]):
+        begin_altitude(m, e["altitude"], p["filter_altitude_noise"])
 
 
 @njit(cache=True, nogil=True)
-def fold(m, dx):
+def learn_road(p, m, distance):
+    """Variance of the road's bank and grade: the mean square of their estimates and uncertainties (EM)."""
+    share = min(distance / p["filter_road_memory"], 1.0)
+    r = np.empty((3, 3))
+    rotation_matrix(m["q_nv"], r)
+    for axis in range(2):
+        angle = r[2, 1] if axis == 0 else r[2, 0]
+        square = angle * angle + m["covariance"][ATTITUDE + axis, ATTITUDE + axis]
+        variance = m["road_variance"][axis] + share * (square - m["road_variance"][axis])
+        m["road_variance"][axis] = min(max(variance, p["filter_min_road_sigma"] ** 2), p["filter_max_road_sigma"] ** 2)
+
+
+@njit(cache=True, nogil=True)
+def fold(p, m, dx):
     """Fold the error state into the references and reset it (4.29), (4.30); the speed stays positive."""
     m["speed"] = max(m["speed"] + dx[SPEED], 0.0)
     m["acceleration"] += dx[ACCELERATION]
     m["yaw_rate"] += dx[YAW_RATE]
-    turn(m["q_nv"], dx[ATTITUDE], dx[ATTITUDE + 1], dx[ATTITUDE + 2])
+    turn_right(m["q_nv"], dx[ATTITUDE], dx[ATTITUDE + 1], dx[ATTITUDE + 2])
     turn(m["q_vs"], dx[MOUNTING], dx[MOUNTING + 1], dx[MOUNTING + 2])
     for i in range(3):
         m["bias"][i] += dx[BIAS + i]
         m["gyro_bias"][i] += dx[GYRO_BIAS + i]
+    for i in range(2):
+        m["gradient"][i] += dx[GRADIENT + i]
+        m["lever_arm"][i] += dx[LEVER_ARM + i]
+        m["suspension"][i] += dx[SUSPENSION + i]
+    m["antenna"] += dx[ANTENNA]
+    m["altitude"] += dx[ALTITUDE]
+    longest = (p["epoch_latency_count"] - 1) * p["epoch_latency_step"]
+    m["latency"] = min(max(m["latency"] + dx[LATENCY], 0.0), longest)
 
 
 @njit(cache=True, nogil=True)
-def shifted_signals(p, a, e, f_s, w_s):
-    """Mean signals of the epoch at the refined latency, between the two nearest hypotheses."""
-    position = min(max(a["latency"] / p["epoch_latency_step"], 0.0), p["epoch_latency_count"] - 1.0)
-    low = min(int(position), max(p["epoch_latency_count"] - 2, 0))
-    weight = position - low
-    high = min(low + 1, p["epoch_latency_count"] - 1)
-    for i in range(3):
-        f_s[i] = (1 - weight) * e["f_s"][low, i] + weight * e["f_s"][high, i]
-        w_s[i] = (1 - weight) * e["w_s"][low, i] + weight * e["w_s"][high, i]
-
-
-@njit(cache=True, nogil=True)
-def step_filter(p, m, a, e, f_s, w_s):
+def step_filter(p, c, m, a, e, scratch):
     """One epoch: start where it can be started, else predict and update; True when the filter made a step."""
     if not e["usable"]:
         m["aligned"] = False
@@ -868,7 +1322,7 @@ def step_filter(p, m, a, e, f_s, w_s):
             and math.isfinite(a["solved_time"])
             and largest_sigma(a["covariance"]) < p["filter_start_sigma"]
         ):
-            start_from_coarse(p, m, a, e["speed"], e["course"])
+            start_from_coarse(p, m, a, e)
             return True
         else:
             return False
@@ -878,12 +1332,19 @@ def step_filter(p, m, a, e, f_s, w_s):
                 set_heading(m, e["course"])
                 m["aligned"] = True
         elif heading_known:
-            begin_motion(p, m, e["speed"], e["course"])
+            begin_motion(p, m, e)
             return True
         else:
             return False
-    predict(p, m, e["period"])
-    update(p, m, e, f_s, w_s)
+    if not delayed_signals(p, c, m["latency"], e, scratch):
+        m["aligned"] = False
+        return False
+    m["gyro"] = m["gyro"] or e["gyro"]
+    n = STATES if m["gyro"] else GYRO_BIAS  # without a gyroscope the last states are not carried
+    predict(p, m, e["period"], n)
+    update(p, m, e, n)
+    if math.isfinite(p["filter_road_memory"]):
+        learn_road(p, m, e["period"] * e["mean_speed"])
     return True
 
 
@@ -1051,7 +1512,7 @@ def watch_for_change(p, g, w, s, a, e, k, b):
     """Feed the forgetting window and look at it every few seconds of motion; True when the device has moved."""
     forget(w, math.exp(-e["period"] / p["change_window"]))
     g["looked_time"] *= math.exp(-e["period"] / p["change_window"])
-    accumulate(p, w, e, k)
+    accumulate(p, w, e, k, a["hypothesis"], 1)
     if w["time"] - g["looked_time"] < p["change_interval"]:
         return False
     g["looked_time"] = w["time"]
@@ -1156,13 +1617,14 @@ def recover_filter(p, m, a, s):
 
 
 @njit(cache=True, nogil=True)
-def process_epoch(p, a, w, x, m, s, v, g, e, scratch, b, events, count):
+def process_epoch(p, c, a, w, x, m, s, v, g, e, scratch, b, events, count):
     """All stages in order for one epoch; gives the number of events so far."""
-    f_s, w_s, k, sigma = scratch[3][:3], scratch[4][:3], scratch[5][:3], scratch[6][:3]
+    k, sigma = scratch[6][:3], scratch[7][:3]
     informative = e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])
     if not informative:
         x["period"] = 0.0
-    elif merge_epoch(p, x, e):
+    elif merge_epoch(p, c, x, e, scratch):
+        kinematics(x, k)
         update_coarse(p, a, x, k, b)
         excite(p, s, x, k)
         if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, g, w, s, a, x, k, b):
@@ -1173,13 +1635,12 @@ def process_epoch(p, a, w, x, m, s, v, g, e, scratch, b, events, count):
             count = write_event(events, count, e["t"], CHANGED, w["q_vs"], sigma, 0.0, 0.0, angle, REASON_NONE)
             begin_again(a, w, m, s, v, g)
             return count
-    shifted_signals(p, a, e, f_s, w_s)
-    if not step_filter(p, m, a, e, f_s, w_s):
+    if not step_filter(p, c, m, a, e, scratch):
         return count
     mounting_sigma(p, m["covariance"], MOUNTING, sigma)
     settle(p, s, m, a, e, sigma)
     if v["state"] == 1:
-        return verify(p, s, v, e, f_s, events, count)
+        return verify(p, s, v, e, e["f_s"], events, count)
     if s["stable"] and s["reliable"] and not s["confirmed"]:
         start_verification(v, s, m, sigma)
         return write_event(events, count, e["t"], STARTED, v["q_vs"], v["sigma"], 0.0, 0.0, np.nan, REASON_NONE)
@@ -1279,11 +1740,9 @@ def report(p, c, a, m, s, v, rows, count):
     """Append a row of history when the interval has passed and there is an estimate."""
     if c["t"] < c["next_report"]:
         return count
-    if not describe(p, c, a, m, s, v, rows[count]):
-        return count
     interval = p["report_interval"]
     c["next_report"] = (math.floor(c["t"] / interval + 1e-9) + 1) * interval
-    return count + 1
+    return count + 1 if describe(p, c, a, m, s, v, rows[count]) else count
 
 
 @njit(cache=True, nogil=True)
@@ -1296,20 +1755,19 @@ def run(
     s, v, g, e = settling[0], verification[0], change[0], epochs[0]
     scratch = np.zeros((8, 8))
     b = np.zeros((3, 3))
-    row_count, event_count, next_fix = 0, 0, 0
-    for i in range(t.shape[0]):
-        fix = -1
-        if next_fix < fix_row.shape[0] and fix_row[next_fix] == i:
-            fix = next_fix
+    row_count, event_count, next_fix, i = 0, 0, 0, 0
+    while i < t.shape[0]:
+        stop = t.shape[0]
+        if next_fix < fix_row.shape[0]:
+            stop = fix_row[next_fix] + 1
+        i = integrate(p, c, t, f_s, w_s, i, stop, counts)
+        if i == stop and next_fix < fix_row.shape[0]:
+            if fix_valid[next_fix] and t[i - 1] == c["t"]:
+                end = take_fix(p, c, e, t[i - 1], fixes[next_fix], counts, scratch)
+                if end == COMPLETE:
+                    event_count = process_epoch(p, c, a, w, x, m, s, v, g, e, scratch, b, events, event_count)
+                if end != NO_EPOCH:
+                    start_epoch(c, t[i - 1], e["next_speed"], e["next_course"])
             next_fix += 1
-        if t[i] == c["t"]:
-            counts[DUPLICATE_TIME] += 1
-        elif t[i] < c["t"]:
-            counts[BEFORE_PREVIOUS] += 1
-            continue
-        else:
-            integrate_sample(p, c, t[i], f_s[i], w_s[i])
-        if fix >= 0 and fix_valid[fix] and take_fix(p, c, e, t[i], fixes[fix], counts, scratch):
-            event_count = process_epoch(p, a, w, x, m, s, v, g, e, scratch, b, events, event_count)
         row_count = report(p, c, a, m, s, v, rows, row_count)
     return row_count, event_count

@@ -18,7 +18,7 @@ MILLI_G = 9.80665e-3
 class EpochParameters:
     """Samples to epochs: one epoch spans the time between two fixes."""
 
-    min_epoch: float = 0.19
+    min_epoch: float = 0.45
     """s; faster fixes are merged until an epoch is this long"""
     max_epoch: float = 2.6
     """s; longer intervals between fixes are outages"""
@@ -51,7 +51,7 @@ class CoarseParameters:
     """m/s2, prior of the accelerometer bias, per axis"""
     correlation_time: float = 4.0
     """s; the fit's residual (road slope, suspension, latency) stays correlated this long"""
-    min_noise: float = 0.25
+    min_noise: float = 0.3
     """m/s2; the residual's standard deviation is taken to be at least this"""
     gyro_noise_density: float = 1e-3
     """rad2/s; square of the residual angular rate times its correlation time; infinite = gyroscope not used"""
@@ -71,14 +71,16 @@ class FilterParameters:
 
     start_from_coarse: bool = True
     """start when the coarse alignment is good; False: start at once with q_vs = 1 (thesis 5.2)"""
-    start_sigma: float = 8 * DEGREE
+    start_sigma: float = 12 * DEGREE
     """rad; start when the largest sigma of the coarse alignment is below"""
+    start_inflation: float = 1.5
+    """factor of the coarse alignment's sigmas at the start: the filter sees the same road again"""
     acceleration_noise: float = 1.0
     """m2/s5, sigma_a^2, power density of the jerk"""
-    speed_noise_factor: float = 1.0
-    """factor of T^3 in Q1: 1/3 for the Wiener-process acceleration (4.67), 1 for acceleration constant over an epoch"""
-    cross_noise_factor: float = 1.0
-    """factor of T^2 in Q1: 1/2 or 1, as above"""
+    constant_over_epoch: bool = True
+    """acceleration and yaw rate are means of an epoch and change between epochs; False: Wiener process (4.67)"""
+    mean_share: float = 0.5
+    """share of an epoch between the middle, which its mean signals stand for, and its end; 0 in the thesis"""
     yaw_rate_noise: float = 0.02
     """rad2/s3, random walk of the yaw rate"""
     yaw_rate_noise_per_speed: float = 0.0
@@ -87,30 +89,64 @@ class FilterParameters:
     """s2 per 0.25 s, sigma_aV^2 with the gate w_z of (4.63)"""
     mounting_noise_per_yaw_rate: float = 0.0
     """s2 per 0.25 s, sigma_aA^2 with the gate w_z of (4.63)"""
-    heading_noise: float = 1e-4
+    heading_noise: float = 5e-5
     """rad2/s, random walk of the heading (side slip)"""
     mounting_noise: float = 1e-9
     """rad2/s, random walk of the mounting"""
-    tilt_sigma: float = 2.0 * DEGREE
-    """rad, road and suspension: stationary standard deviation of the vehicle's roll and pitch"""
-    tilt_time_constant: float = 8.0
-    """s, the vehicle's roll and pitch return to level; infinite = they do not"""
+    bank_sigma: float = 1.5 * DEGREE
+    """rad, stationary standard deviation of the road's bank; roads are level on average"""
+    bank_length: float = 50.0
+    """m, the bank returns to level over this distance; infinite = it does not"""
+    grade_sigma: float = 2.5 * DEGREE
+    """rad, stationary standard deviation of the road's grade"""
+    grade_length: float = 100.0
+    """m, the grade returns to level over this distance; infinite = it does not"""
+    road_memory: float = 2000.0
+    """m over which the variances of bank and grade are learnt; infinite = they are as given"""
+    min_road_sigma: float = 0.7 * DEGREE
+    """rad, bank and grade are never taken to vary less"""
+    max_road_sigma: float = 5.0 * DEGREE
+    """rad, nor more"""
     bias_sigma: float = 20 * MILLI_G
     """m/s2, prior of the accelerometer bias, per axis; 0 = no such state"""
     bias_noise: float = 1e-7
     """m2/s5, random walk of the accelerometer bias"""
     gyro_bias_sigma: float = 1.0 * DEGREE
     """rad/s, prior of the gyroscope bias, per axis"""
-    accelerometer_noise: float = 0.35
+    gyro_bias_noise: float = 1e-10
+    """rad2/s3, random walk of the gyroscope bias"""
+    lever_arm: float = 1.0
+    """m, usual place of a device ahead of the vehicle's turning point, the middle of the rear axle"""
+    lever_arm_sigma: float = 0.7
+    """m, prior of the lever arm, ahead and to the left"""
+    antenna_sigma: float = 0.3
+    """m, prior of the antenna's place ahead of the device"""
+    latency_sigma: float = 0.1
+    """s, uncertainty of the latency the filter starts with"""
+    latency_noise: float = 1e-7
+    """s2/s, random walk of the latency"""
+    pitch_per_acceleration: float = 0.5 * DEGREE
+    """rad per m/s2, usual squat and dive of the suspension"""
+    roll_per_acceleration: float = 0.4 * DEGREE
+    """rad per m/s2, usual lean of the suspension in curves"""
+    suspension_sigma: float = 0.2 * DEGREE
+    """rad per m/s2, prior of both about the usual"""
+    accelerometer_noise: float = 0.13
     """m/s2, sigma_accl of an epoch's mean specific force"""
-    speed_noise: float = 0.2
-    """m/s, sigma_GPS,speed per horizontal axis"""
-    climb_noise: float = 1.0
-    """m/s, sigma of the climb rate, its correlation in time allowed for"""
+    speed_noise: float = 0.16
+    """m/s, sigma_GPS,speed per horizontal axis where the receiver does not state it"""
+    climb_noise: float = math.inf
+    """m/s, sigma of the climb rate from differenced altitudes; infinite = not used, the altitude itself is"""
+    vertical_speed_noise: float = 0.3
+    """m/s, sigma of the vertical speed of receivers that give it"""
+    altitude_noise: float = 0.5
+    """m, sigma of the altitude from one epoch to the next; infinite = not used"""
+    altitude_drift: float = 0.02
+    """m2/s, random walk of the altitude's error"""
     course_rate_noise: float = math.inf
     """rad/s, sigma_GPS,w of the differenced course; infinite = not used, the velocity vector already tells"""
-    gyro_noise: float = 0.03
-    """rad/s, epoch mean of the angular rate not explained by yaw; infinite = gyroscope not used"""
+    gyro_noise: float = 0.015
+    """rad/s, epoch mean of the angular rate not explained; infinite = gyroscope not used"""
     standstill_yaw_rate_noise: float = 0.05
     """rad/s, a standing vehicle does not turn; infinite = not used"""
     low_speed_course: bool = False
@@ -139,7 +175,7 @@ class SettlingParameters:
     """filter and coarse alignment agree within so many sigmas"""
     second_opinion_angle: float = 4.0 * DEGREE
     """rad; and within this angle"""
-    systematic_sigma: float = 0.5 * DEGREE
+    systematic_sigma: float = 0.15 * DEGREE
     """rad, per axis, added in square to every stated sigma: what the model leaves out (lever arm, suspension)"""
 
 
@@ -192,26 +228,41 @@ class Parameters:
 DEFAULT = Parameters()
 
 THESIS = Parameters(
-    epoch=EpochParameters(detect_reversing=False, altitude_time_constant=0.0, latency_count=1),
+    epoch=EpochParameters(min_epoch=0.19, detect_reversing=False, altitude_time_constant=0.0, latency_count=1),
     filter=FilterParameters(
         start_from_coarse=False,
         acceleration_noise=10.0,
-        speed_noise_factor=1 / 3,
-        cross_noise_factor=1 / 2,
+        constant_over_epoch=False,
+        mean_share=0.0,
         yaw_rate_noise=0.0,
         yaw_rate_noise_per_speed=5e-3,
         attitude_noise_per_yaw_rate=1e-4,
         mounting_noise_per_yaw_rate=0.1,
         heading_noise=0.0,
         mounting_noise=0.0,
-        tilt_sigma=0.0,
-        tilt_time_constant=math.inf,
+        bank_sigma=0.0,
+        bank_length=math.inf,
+        grade_sigma=0.0,
+        grade_length=math.inf,
+        road_memory=math.inf,
         bias_sigma=0.0,
         bias_noise=0.0,
         gyro_bias_sigma=0.0,
+        gyro_bias_noise=0.0,
+        lever_arm=0.0,
+        lever_arm_sigma=0.0,
+        antenna_sigma=0.0,
+        latency_sigma=0.0,
+        latency_noise=0.0,
+        pitch_per_acceleration=0.0,
+        roll_per_acceleration=0.0,
+        suspension_sigma=0.0,
         accelerometer_noise=math.sqrt(15.0),
         speed_noise=math.sqrt(0.3),
         climb_noise=math.sqrt(0.3),
+        vertical_speed_noise=math.sqrt(0.3),
+        altitude_noise=math.inf,
+        altitude_drift=0.0,
         course_rate_noise=math.sqrt(2.0),
         gyro_noise=math.inf,
         standstill_yaw_rate_noise=math.inf,

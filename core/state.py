@@ -8,15 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core._kernel import EPOCH
+from core._kernel import MERGED, STATES
 
 RING = 84
 """points of the integrated IMU signal kept, 0.05 s or one sample apart: the longest epoch plus the longest latency"""
 AVERAGE_EPOCHS = 100
 """n of the moving average (thesis 5.3)"""
 MAX_LATENCIES = 9
-STATES = 15
-"""error state: speed, acceleration, yaw rate, attitude (3), mounting (3), accelerometer bias (3), gyroscope bias (3)"""
 
 CLOCK = np.dtype(
     [
@@ -46,6 +44,8 @@ CLOCK = np.dtype(
         ("slow_since", "?"),  # the vehicle was slow since then
         ("reversing", "?"),
         ("next_report", "f8"),  # s
+        ("repeats", "i8", (3,)),  # samples for which each axis has repeated itself
+        ("flat_tops", "i8"),  # samples of the epoch at the end of the range
     ]
 )
 
@@ -77,13 +77,24 @@ FILTER = np.dtype(
     [
         ("running", "?"),
         ("aligned", "?"),  # heading was started from the course
+        ("gyro", "?"),  # angular rates were seen
         ("speed", "f8"),
         ("acceleration", "f8"),
         ("yaw_rate", "f8"),
+        ("last_yaw_rate", "f8"),  # of the epoch before
+        ("last_forward", "f8"),  # m/s2, forward acceleration of the epoch before
+        ("last_lateral", "f8"),  # m/s2
+        ("gradient", "f8", (2,)),  # rad/m, change of the road's bank and grade with the distance
+        ("road_variance", "f8", (2,)),  # rad2, of bank and grade, learnt
         ("q_nv", "f8", (4,)),
         ("q_vs", "f8", (4,)),
         ("bias", "f8", (3,)),  # m/s2, accelerometer, sensor frame
         ("gyro_bias", "f8", (3,)),  # rad/s
+        ("lever_arm", "f8", (2,)),  # m, the device ahead and to the left of the turning point
+        ("antenna", "f8"),  # m, the antenna ahead of the device
+        ("latency", "f8"),  # s, of the fixes
+        ("suspension", "f8", (2,)),  # rad s2/m, pitch and roll per acceleration
+        ("altitude", "f8"),  # m, nan = unknown
         ("covariance", "f8", (STATES, STATES)),
     ]
 )
@@ -139,7 +150,7 @@ class State(NamedTuple):
     window: NDArray[np.void]
     """forgetting coarse alignment for the orientation change, a `COARSE` record"""
     merged: NDArray[np.void]
-    """the epoch the coarse alignment is collecting, an `EPOCH` record"""
+    """the epoch the coarse alignment is collecting, a `MERGED` record"""
     filter: NDArray[np.void]
     settling: NDArray[np.void]
     verification: NDArray[np.void]
@@ -150,7 +161,7 @@ class State(NamedTuple):
         return State(*(part.copy() for part in self))
 
 
-LAYOUT = State(CLOCK, COARSE, COARSE, EPOCH, FILTER, SETTLING, VERIFICATION, CHANGE)  # type: ignore[arg-type]
+LAYOUT = State(CLOCK, COARSE, COARSE, MERGED, FILTER, SETTLING, VERIFICATION, CHANGE)  # type: ignore[arg-type]
 """The dtype of each part."""
 
 
@@ -179,7 +190,7 @@ def empty_state() -> State:
         empty_clock(),
         empty_coarse(),
         empty_coarse(),
-        np.zeros(1, EPOCH),
+        np.zeros(1, MERGED),
         np.zeros(1, FILTER),
         np.zeros(1, SETTLING),
         np.zeros(1, VERIFICATION),
@@ -187,4 +198,5 @@ def empty_state() -> State:
     )
     state.filter["q_nv"][0, 0] = state.filter["q_vs"][0, 0] = 1.0
     state.settling["average"][0, 0] = 1.0
+    state.filter["altitude"] = np.nan
     return state
