@@ -31,8 +31,9 @@ FLAT_TOP = 2
 
 SPEED, ACCELERATION, YAW_RATE, GRADIENT, ATTITUDE, MOUNTING, BIAS = 0, 1, 2, 3, 5, 8, 11
 LEVER_ARM, ALTITUDE, LATENCY, SUSPENSION, ANTENNA, GYRO_BIAS = 14, 16, 17, 18, 20, 21
-"""First index of each part of the error state."""
-STATES = 24
+BOUNCE, BOUNCE_BEFORE = 24, 26
+"""First index of each part of the error state; those from GYRO_BIAS on are carried only with a gyroscope."""
+STATES = 28
 FORCE, VELOCITY, COURSE_RATE, RATE, STANDSTILL, HEIGHT = 0, 3, 6, 7, 10, 11
 """First row of each measurement: specific force (3), velocity (3), yaw rate from the course, angular rate (3), yaw rate
 at standstill, altitude."""
@@ -763,6 +764,8 @@ def choose_latency(p, a, prior, noise, gyro_noise):
     for h in range(count):
         costs[h] = profile_matrix(a, h, prior, noise, gyro_noise, b)
         costs[h] -= 2 * best_rotation(b, q)
+        delay = h * p["epoch_latency_step"]
+        costs[h] += ((delay - p["coarse_latency"]) / p["coarse_latency_sigma"]) ** 2
     best = 0
     for h in range(1, count):
         if costs[h] < costs[best]:
@@ -863,6 +866,8 @@ def add_slow_noise(p, m, cov, period, distance):
         cov[MOUNTING + i, MOUNTING + i] += p["filter_mounting_noise"] * period
         cov[BIAS + i, BIAS + i] += p["filter_bias_noise"] * period
         cov[GYRO_BIAS + i, GYRO_BIAS + i] += p["filter_gyro_bias_noise"] * period
+    for i in range(2):  # the body sits anew on its springs
+        cov[BOUNCE + i, BOUNCE + i] = p["filter_bounce_sigma"] ** 2
     for axis in range(2):
         sigma = math.sqrt(m["road_variance"][axis])
         curve = 1 / (p["filter_bank_length"] if axis == 0 else p["filter_grade_length"])
@@ -904,10 +909,15 @@ def begin_motion(p, m, e):
     m["acceleration"] = 0.0
     m["yaw_rate"] = 0.0
     m["gradient"][:] = 0.0
+    m["bounce"][:] = 0.0
+    m["bounce_before"][:] = 0.0
     m["last_yaw_rate"] = m["last_forward"] = m["last_lateral"] = 0.0
     set_heading(m, e["course"])
     cov = m["covariance"]
     clear_state(cov, 0, MOUNTING)
+    clear_state(cov, BOUNCE, STATES)
+    for i in range(2):
+        cov[BOUNCE + i, BOUNCE + i] = p["filter_bounce_sigma"] ** 2
     noise = e["speed_noise"]
     cov[SPEED, SPEED] = (2 * noise) ** 2
     cov[ACCELERATION, ACCELERATION] = 1.0
@@ -930,17 +940,17 @@ def begin_altitude(m, altitude, sigma):
 
 
 @njit(cache=True, nogil=True)
-def start_from_coarse(p, m, a, e):
-    """Start the filter at the coarse alignment, everything else at its prior."""
+def start_filter(p, m, e, q, covariance, bias, latency):
+    """Start the filter at a mounting with its covariance, everything else at its prior."""
     cov = m["covariance"]
     cov[:] = 0.0
-    m["q_vs"][:] = a["q_vs"]
-    m["bias"][:] = a["bias"]
+    m["q_vs"][:] = q
+    m["bias"][:] = bias
     m["gyro_bias"][:] = 0.0
     m["lever_arm"][0] = p["filter_lever_arm"]
     m["lever_arm"][1] = 0.0
     m["antenna"] = 0.0
-    m["latency"] = a["latency"]
+    m["latency"] = latency
     m["suspension"][0] = p["filter_pitch_per_acceleration"]
     m["suspension"][1] = p["filter_roll_per_acceleration"]
     m["road_variance"][0] = p["filter_bank_sigma"] ** 2
@@ -948,7 +958,7 @@ def start_from_coarse(p, m, a, e):
     begin_motion(p, m, e)
     for i in range(3):
         for j in range(3):
-            cov[MOUNTING + i, MOUNTING + j] = p["filter_start_inflation"] ** 2 * a["covariance"][i, j]
+            cov[MOUNTING + i, MOUNTING + j] = p["filter_start_inflation"] ** 2 * covariance[i, j]
         cov[BIAS + i, BIAS + i] = p["filter_bias_sigma"] ** 2
         cov[GYRO_BIAS + i, GYRO_BIAS + i] = p["filter_gyro_bias_sigma"] ** 2
     for i in range(2):
@@ -957,6 +967,23 @@ def start_from_coarse(p, m, a, e):
     cov[ANTENNA, ANTENNA] = p["filter_antenna_sigma"] ** 2
     cov[LATENCY, LATENCY] = p["filter_latency_sigma"] ** 2
     m["running"] = True
+
+
+@njit(cache=True, nogil=True)
+def mounting_covariance(m):
+    """Covariance of the filter's mounting, (3, 3)."""
+    return m["covariance"][MOUNTING : MOUNTING + 3, MOUNTING : MOUNTING + 3].copy()
+
+
+@njit(cache=True, nogil=True)
+def refine(p, m, a, e):
+    """Start once more when the mounting is known well enough: what was learnt about lever arm, suspension and biases
+    while it was far off rests on wrong axes."""
+    covariance = mounting_covariance(m)
+    if m["refined"] or largest_sigma(covariance) > p["filter_refine_sigma"] or not math.isfinite(e["course"]):
+        return
+    start_filter(p, m, e, m["q_vs"].copy(), covariance, a["bias"], m["latency"])
+    m["refined"] = True
 
 
 @njit(cache=True, nogil=True)
@@ -1009,6 +1036,8 @@ def predict_state(p, m, period, distance, bank, grade):
     turn(m["q_nv"], 0.0, 0.0, period * m["yaw_rate"])
     turn_right(m["q_nv"], roll_step, pitch_step, 0.0)
     m["altitude"] += distance * r[2, 0]
+    m["bounce_before"][:] = m["bounce"]
+    m["bounce"][:] = 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -1027,6 +1056,9 @@ def transition_rows(cov, n, period, distance, up, bank, grade):
         cov[ATTITUDE + 1, j] = grade[0, 0] * y + grade[0, 1] * cy + up[1] * turned
         cov[GRADIENT + 1, j] = grade[1, 0] * y + grade[1, 1] * cy
         cov[ATTITUDE + 2, j] += up[2] * turned
+    if n == STATES:
+        cov[BOUNCE_BEFORE : BOUNCE_BEFORE + 2, :] = cov[BOUNCE : BOUNCE + 2, :]
+        cov[BOUNCE : BOUNCE + 2, :] = 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -1064,8 +1096,10 @@ def predict_force(m, period, share, up, force, jacobian):
     road = forward + GRAVITY * up[0]
     side = lateral * up[2] + GRAVITY * up[1]
     stiff = GRAVITY * up[2] - lateral * up[1] - speed * speed * curve
-    force[0] = road + stiff * dive * forward
-    force[1] = side + stiff * lean * lateral
+    rolled = 0.5 * (m["bounce"][0] + m["bounce_before"][0])
+    pitched = 0.5 * (m["bounce"][1] + m["bounce_before"][1])
+    force[0] = road + stiff * dive * forward - GRAVITY * pitched
+    force[1] = side + stiff * lean * lateral + GRAVITY * rolled
     force[2] = stiff - dive * forward * road - lean * lateral * side
     d_forward, d_lateral = np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS)
     d_road, d_side, d_stiff = np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS)
@@ -1123,6 +1157,8 @@ def predict_rate(m, period, up, rate, jacobian):
     rate[0] = turning * up[0] + speed * m["gradient"][0] + lean * sway
     rate[1] = turning * up[1] + speed * m["gradient"][1] - dive * surge
     rate[2] = turning * up[2]
+    for i in range(2):
+        rate[i] += (m["bounce"][i] - m["bounce_before"][i]) / period
     jacobian[:] = 0.0
     jacobian[0, SPEED] = m["gradient"][0] + lean * turning
     jacobian[1, SPEED] = m["gradient"][1]
@@ -1191,7 +1227,12 @@ def predict_measurements(p, m, e, z, h):
         z[FORCE + i] += m["bias"][i]
         h[FORCE + i, BIAS + i] = 1.0
         h[FORCE + i, LATENCY] = e["f_slope"][i]
+        h[FORCE + i, BOUNCE] = h[FORCE + i, BOUNCE_BEFORE] = 0.5 * r_vs[1, i] * GRAVITY
+        h[FORCE + i, BOUNCE + 1] = h[FORCE + i, BOUNCE_BEFORE + 1] = -0.5 * r_vs[0, i] * GRAVITY
         if e["gyro"]:
+            for j in range(2):
+                h[RATE + i, BOUNCE + j] = r_vs[j, i] / e["period"]
+                h[RATE + i, BOUNCE_BEFORE + j] = -r_vs[j, i] / e["period"]
             z[RATE + i] += m["gyro_bias"][i]
             h[RATE + i, GYRO_BIAS + i] = 1.0
             h[RATE + i, LATENCY] = e["w_slope"][i]
@@ -1299,6 +1340,8 @@ def fold(p, m, dx):
         m["gyro_bias"][i] += dx[GYRO_BIAS + i]
     for i in range(2):
         m["gradient"][i] += dx[GRADIENT + i]
+        m["bounce"][i] += dx[BOUNCE + i]
+        m["bounce_before"][i] += dx[BOUNCE_BEFORE + i]
         m["lever_arm"][i] += dx[LEVER_ARM + i]
         m["suspension"][i] += dx[SUSPENSION + i]
     m["antenna"] += dx[ANTENNA]
@@ -1322,7 +1365,8 @@ def step_filter(p, c, m, a, e, scratch):
             and math.isfinite(a["solved_time"])
             and largest_sigma(a["covariance"]) < p["filter_start_sigma"]
         ):
-            start_from_coarse(p, m, a, e)
+            start_filter(p, m, e, a["q_vs"], a["covariance"], a["bias"], a["latency"])
+            m["refined"] = largest_sigma(a["covariance"]) < p["filter_refine_sigma"]
             return True
         else:
             return False
@@ -1345,6 +1389,8 @@ def step_filter(p, c, m, a, e, scratch):
     update(p, m, e, n)
     if math.isfinite(p["filter_road_memory"]):
         learn_road(p, m, e["period"] * e["mean_speed"])
+    if p["filter_start_from_coarse"]:
+        refine(p, m, a, e)
     return True
 
 
@@ -1605,13 +1651,15 @@ def verify(p, s, v, e, f_s, events, count):
 
 @njit(cache=True, nogil=True)
 def recover_filter(p, m, a, s):
-    """A filter far from a good second opinion has lost its way: start it again from there."""
-    good = math.isfinite(a["solved_time"]) and largest_sigma(a["covariance"]) < 0.5 * p["filter_start_sigma"]
-    if not p["filter_start_from_coarse"] or s["agrees"] or not good:
+    """A filter far from a good second opinion, in angle or latency, has lost its way: it starts again from there."""
+    good = math.isfinite(a["solved_time"]) and largest_sigma(a["covariance"]) < p["filter_recover_sigma"]
+    if not p["filter_start_from_coarse"] or not good:
         return
     d = np.empty(3)
     difference(m["q_vs"], a["q_vs"], d)
-    if d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > (2.5 * p["settling_second_opinion_angle"]) ** 2:
+    angle = math.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
+    lost = not s["agrees"] and angle > 2.5 * p["settling_second_opinion_angle"]
+    if lost or abs(m["latency"] - a["latency"]) > p["filter_recover_latency"]:
         m["running"] = False
         soft_start(s)
 

@@ -53,6 +53,10 @@ class CoarseParameters:
     """s; the fit's residual (road slope, suspension, latency) stays correlated this long"""
     min_noise: float = 0.3
     """m/s2; the residual's standard deviation is taken to be at least this"""
+    latency: float = 0.3
+    """s, usual latency of a fix"""
+    latency_sigma: float = 0.4
+    """s, its spread over receivers; counts little once there is data"""
     gyro_noise_density: float = 1e-3
     """rad2/s; square of the residual angular rate times its correlation time; infinite = gyroscope not used"""
     interval: float = 1.0
@@ -71,8 +75,14 @@ class FilterParameters:
 
     start_from_coarse: bool = True
     """start when the coarse alignment is good; False: start at once with q_vs = 1 (thesis 5.2)"""
-    start_sigma: float = 12 * DEGREE
+    start_sigma: float = 20 * DEGREE
     """rad; start when the largest sigma of the coarse alignment is below"""
+    refine_sigma: float = 6 * DEGREE
+    """rad; started farther off, the filter starts once more when its largest sigma is below"""
+    recover_sigma: float = 4 * DEGREE
+    """rad; a second opinion with a smaller sigma is good enough to start again from"""
+    recover_latency: float = 0.35
+    """s; it does when the latencies differ by more"""
     start_inflation: float = 1.5
     """factor of the coarse alignment's sigmas at the start: the filter sees the same road again"""
     acceleration_noise: float = 1.0
@@ -145,8 +155,10 @@ class FilterParameters:
     """m2/s, random walk of the altitude's error"""
     course_rate_noise: float = math.inf
     """rad/s, sigma_GPS,w of the differenced course; infinite = not used, the velocity vector already tells"""
-    gyro_noise: float = 0.015
+    gyro_noise: float = 0.004
     """rad/s, epoch mean of the angular rate not explained; infinite = gyroscope not used"""
+    bounce_sigma: float = 0.3 * DEGREE
+    """rad, roll and pitch of the body on its springs, from one epoch to the next"""
     standstill_yaw_rate_noise: float = 0.05
     """rad/s, a standing vehicle does not turn; infinite = not used"""
     low_speed_course: bool = False
@@ -265,6 +277,7 @@ THESIS = Parameters(
         altitude_drift=0.0,
         course_rate_noise=math.sqrt(2.0),
         gyro_noise=math.inf,
+        bounce_sigma=0.0,
         standstill_yaw_rate_noise=math.inf,
         low_speed_course=True,
         gate=math.inf,

@@ -77,6 +77,7 @@ FILTER = np.dtype(
     [
         ("running", "?"),
         ("aligned", "?"),  # heading was started from the course
+        ("refined", "?"),  # started once more, near the right mounting
         ("gyro", "?"),  # angular rates were seen
         ("speed", "f8"),
         ("acceleration", "f8"),
@@ -85,6 +86,8 @@ FILTER = np.dtype(
         ("last_forward", "f8"),  # m/s2, forward acceleration of the epoch before
         ("last_lateral", "f8"),  # m/s2
         ("gradient", "f8", (2,)),  # rad/m, change of the road's bank and grade with the distance
+        ("bounce", "f8", (2,)),  # rad, roll and pitch of the body on its springs at the end of the epoch
+        ("bounce_before", "f8", (2,)),  # rad, at its beginning
         ("road_variance", "f8", (2,)),  # rad2, of bank and grade, learnt
         ("q_nv", "f8", (4,)),
         ("q_vs", "f8", (4,)),
