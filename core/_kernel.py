@@ -19,7 +19,7 @@ EARTH_RADIUS = 6371008.8
 """m, mean radius"""
 REFERENCE_PERIOD = 0.25
 """s, the epoch for which the thesis gives its noises per step"""
-RING_SPACING = 0.05
+RING_SPACING = 0.1
 """s"""
 
 SLOPE_STEP = 0.15
@@ -212,7 +212,7 @@ def push_point(c, t):
 def integrate(p, c, t, f_s, w_s, first, stop, counts):
     """Take IMU samples up to `stop` or until a report is due; gives the index after the last one taken.
 
-    Trapezoidal integral, a point in the ring every 50 ms. Plain local numbers: this is where the time goes.
+    Trapezoidal integral, a point in the ring every 0.1 s. Plain local numbers: this is where the time goes.
     """
     now, report, gap = c["t"], c["next_report"], p["epoch_max_sample_gap"]
     point = c["ring_t"][c["ring_head"]] + RING_SPACING - 1e-9
@@ -775,6 +775,8 @@ def choose_latency(p, a, prior, noise, gyro_noise):
         curvature = costs[best - 1] - 2 * costs[best] + costs[best + 1]
         if curvature > 0:
             offset = 0.5 * (costs[best - 1] - costs[best + 1]) / curvature
+    for h in range(count):
+        a["costs"][h] = costs[h] - costs[best]
     a["hypothesis"] = best
     a["latency"] = (best + offset) * p["epoch_latency_step"]
     return costs[best]
@@ -951,6 +953,7 @@ def start_filter(p, m, e, q, covariance, bias, latency):
     m["lever_arm"][1] = 0.0
     m["antenna"] = 0.0
     m["latency"] = latency
+    m["noise_factor"][:] = p["filter_start_noise_factor"]
     m["suspension"][0] = p["filter_pitch_per_acceleration"]
     m["suspension"][1] = p["filter_roll_per_acceleration"]
     m["road_variance"][0] = p["filter_bank_sigma"] ** 2
@@ -1250,11 +1253,11 @@ def observe(p, m, e, y, noise):
     y[:] = 0.0
     for i in range(3):
         y[FORCE + i] = e["f_s"][i]
-        noise[FORCE + i] = p["filter_accelerometer_noise"]
+        noise[FORCE + i] = p["filter_accelerometer_noise"] * learnt_noise(p, m, 2)
     if math.isfinite(e["course"]):
         y[VELOCITY] = e["speed"] * math.sin(e["course"])
         y[VELOCITY + 1] = e["speed"] * math.cos(e["course"])
-        noise[VELOCITY] = noise[VELOCITY + 1] = e["speed_noise"]
+        noise[VELOCITY] = noise[VELOCITY + 1] = e["speed_noise"] * learnt_noise(p, m, 0)
     if math.isfinite(e["vertical_speed"]):
         y[VELOCITY + 2] = e["vertical_speed"]
         noise[VELOCITY + 2] = p["filter_vertical_speed_noise"]
@@ -1272,7 +1275,7 @@ def observe(p, m, e, y, noise):
         noise[STANDSTILL] = p["filter_standstill_yaw_rate_noise"]
     if math.isfinite(e["altitude"]) and math.isfinite(m["altitude"]):
         y[HEIGHT] = e["altitude"]
-        noise[HEIGHT] = p["filter_altitude_noise"]
+        noise[HEIGHT] = p["filter_altitude_noise"] * learnt_noise(p, m, 1)
 
 
 @njit(cache=True, nogil=True)
@@ -1304,6 +1307,12 @@ def update(p, m, e, n):
         total = variance + noise[row] ** 2
         if innovation * innovation > p["filter_gate"] ** 2 * total:
             total = innovation * innovation / p["filter_gate"] ** 2
+        if VELOCITY <= row < VELOCITY + 2:
+            learn_noise(p, m, 0, (innovation * innovation - variance) / e["speed_noise"] ** 2)
+        elif row == HEIGHT:
+            learn_noise(p, m, 1, (innovation * innovation - variance) / p["filter_altitude_noise"] ** 2)
+        elif row < VELOCITY:
+            learn_noise(p, m, 2, (innovation * innovation - variance) / p["filter_accelerometer_noise"] ** 2)
         for i in range(n):
             gain = ph[i] / total
             dx[i] += gain * innovation
@@ -1312,6 +1321,21 @@ def update(p, m, e, n):
     fold(p, m, dx)
     if not math.isfinite(m["altitude"]) and math.isfinite(e["altitude"]) and math.isfinite(p["filter_altitude_noise"]):
         begin_altitude(m, e["altitude"], p["filter_altitude_noise"])
+
+
+@njit(cache=True, nogil=True)
+def learn_noise(p, m, which, ratio):
+    """Variance of a kind of measurement, relative to the usual: mean square of innovations less what the filter did not
+    know (covariance matching); receivers smooth, and phones err more than they say."""
+    if math.isfinite(p["filter_noise_memory"]):
+        ratio = min(max(ratio, -p["filter_max_noise_factor"]), p["filter_max_noise_factor"] ** 2)
+        m["noise_factor"][which] += (ratio - m["noise_factor"][which]) / p["filter_noise_memory"]
+
+
+@njit(cache=True, nogil=True)
+def learnt_noise(p, m, which):
+    """Factor of the standard deviation: never less than the usual."""
+    return math.sqrt(min(max(m["noise_factor"][which], 1.0), p["filter_max_noise_factor"] ** 2))
 
 
 @njit(cache=True, nogil=True)
@@ -1659,7 +1683,9 @@ def recover_filter(p, m, a, s):
     difference(m["q_vs"], a["q_vs"], d)
     angle = math.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
     lost = not s["agrees"] and angle > 2.5 * p["settling_second_opinion_angle"]
-    if lost or abs(m["latency"] - a["latency"]) > p["filter_recover_latency"]:
+    hypothesis = int(m["latency"] / p["epoch_latency_step"] + 0.5)
+    late = abs(m["latency"] - a["latency"]) > p["filter_recover_latency"]
+    if lost or (late and a["costs"][hypothesis] > p["filter_recover_cost"]):
         m["running"] = False
         soft_start(s)
 

@@ -37,7 +37,7 @@ class EpochParameters:
     detect_reversing: bool = True
     altitude_time_constant: float = 6.0
     """s; smoothing of the altitude that gives the climb rate; 0 = plain differences (5.1)"""
-    latency_step: float = 0.2
+    latency_step: float = 0.25
     """s; grid of the GPS latency hypotheses"""
     latency_count: int = 9
     """number of latency hypotheses, 0, 1, 2... steps; 1 = no latency"""
@@ -82,7 +82,9 @@ class FilterParameters:
     recover_sigma: float = 4 * DEGREE
     """rad; a second opinion with a smaller sigma is good enough to start again from"""
     recover_latency: float = 0.35
-    """s; it does when the latencies differ by more"""
+    """s; a filter whose latency differs by more starts again"""
+    recover_cost: float = 40.0
+    """if, to the second opinion, its own latency is more likely by this much (-2 log likelihood)"""
     start_inflation: float = 1.5
     """factor of the coarse alignment's sigmas at the start: the filter sees the same road again"""
     acceleration_noise: float = 1.0
@@ -163,6 +165,12 @@ class FilterParameters:
     """rad/s, a standing vehicle does not turn; infinite = not used"""
     low_speed_course: bool = False
     """use the course below `moving_speed` too"""
+    noise_memory: float = 50.0
+    """measurements over which the noise of velocity and altitude is learnt; infinite = it is as given"""
+    start_noise_factor: float = 4.0
+    """variance relative to the usual to begin with, so that a poor receiver does no harm before it is known"""
+    max_noise_factor: float = 5.0
+    """it is never taken to be more than so many times the usual"""
     gate: float = 4.0
     """sigmas; noise of a measurement with a larger innovation is raised until it is this large"""
 
@@ -280,6 +288,8 @@ THESIS = Parameters(
         bounce_sigma=0.0,
         standstill_yaw_rate_noise=math.inf,
         low_speed_course=True,
+        noise_memory=math.inf,
+        start_noise_factor=1.0,
         gate=math.inf,
     ),
     settling=SettlingParameters(average_window=math.inf, reliable_yaw_rate=0.15, systematic_sigma=0.0),

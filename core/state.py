@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from core._kernel import MERGED, STATES
 
-RING = 84
-"""points of the integrated IMU signal kept, 0.05 s or one sample apart: the longest epoch plus the longest latency"""
+RING = 52
+"""points of the integrated IMU signal kept, 0.1 s or one sample apart: the longest epoch plus the longest latency"""
 AVERAGE_EPOCHS = 100
 """n of the moving average (thesis 5.3)"""
 MAX_LATENCIES = 9
@@ -66,6 +66,7 @@ COARSE = np.dtype(
         ("noise_density", "f8"),  # (m/s2)^2 s, residual variance times correlation time
         ("hypothesis", "i8"),  # the latency in use
         ("latency", "f8"),  # s, refined between hypotheses
+        ("costs", "f8", (MAX_LATENCIES,)),  # -2 log likelihood of each latency above the best
         ("solved_time", "f8"),  # value of `time` at the last solution, nan = no solution
         ("q_vs", "f8", (4,)),
         ("bias", "f8", (3,)),  # m/s2, sensor frame
@@ -88,6 +89,7 @@ FILTER = np.dtype(
         ("gradient", "f8", (2,)),  # rad/m, change of the road's bank and grade with the distance
         ("bounce", "f8", (2,)),  # rad, roll and pitch of the body on its springs at the end of the epoch
         ("bounce_before", "f8", (2,)),  # rad, at its beginning
+        ("noise_factor", "f8", (3,)),  # variance of velocity, altitude, specific force relative to the usual, learnt
         ("road_variance", "f8", (2,)),  # rad2, of bank and grade, learnt
         ("q_nv", "f8", (4,)),
         ("q_vs", "f8", (4,)),
