@@ -31,8 +31,10 @@ _REASONS = (
     None,
     "the speed integrated from the accelerometer departs from the GPS speed",
     "filter and coarse alignment disagree",
+    "the estimate moved on while the candidate was tested",
+    "the drive did not show the mounting well enough",
 )
-_ROW = 13
+_ROW = 14
 _EVENTS_PER_FIX = 2
 
 
@@ -158,16 +160,16 @@ def _event(params: Parameters, row: Floats) -> Event:
         kind=kind,
         quaternion=row[2:6].copy(),
         sigma=row[6:9].copy(),
-        verification=None if change else Verification(state, float(row[9]), test.duration, float(row[10]), test.limit),
-        angle=float(row[11]) if change else None,
-        reason=_REASONS[int(row[12])],
+        verification=None if change else Verification(state, float(row[9]), test.duration, float(row[10]), float(row[11])),
+        angle=float(row[12]) if change else None,
+        reason=_REASONS[int(row[13])],
     )
 
 
 def _verification(params: Parameters, state: State) -> Verification:
     record, test = state.verification[0], params.verification
     name = _VERIFICATION_STATES[int(record["state"])]
-    return Verification(name, float(record["elapsed"]), test.duration, float(record["error"]), test.limit)
+    return Verification(name, float(record["elapsed"]), test.duration, float(record["error"]), float(record["limit"]) or test.limit)
 
 
 def _mount(params: Parameters, state: State) -> Mount | None:
@@ -178,6 +180,6 @@ def _mount(params: Parameters, state: State) -> Mount | None:
         t=float(record["mount_t"]),
         quaternion=record["mount_q_vs"].copy(),
         sigma=record["mount_sigma"].copy(),
-        verification=Verification("passed", test.duration, test.duration, float(record["mount_error"]), test.limit),
+        verification=Verification("passed", test.duration, test.duration, float(record["mount_error"]), float(record["mount_limit"])),
         suspect=bool(record["suspect"]),
     )

@@ -185,10 +185,14 @@ class SettlingParameters:
     """rad/s; STABLE when the average turns slower"""
     reliable_yaw_rate: float = 0.0
     """rad/s; RELIABLE when exceeded (thesis); 0 = RELIABLE is a statement about information, below"""
-    yaw_sigma: float = 1.8 * DEGREE
+    start_yaw_sigma: float = 2.6 * DEGREE
+    """rad; RELIABLE, and so ready for the drive test, below"""
+    start_tilt_sigma: float = 1.6 * DEGREE
     """rad; RELIABLE below"""
-    tilt_sigma: float = 1.4 * DEGREE
-    """rad; RELIABLE below"""
+    yaw_sigma: float = 1.4 * DEGREE
+    """rad; confirmed below"""
+    tilt_sigma: float = 1.3 * DEGREE
+    """rad; confirmed below"""
     excitation: float = 15.0
     """m2/s3, time integral of squared horizontal acceleration needed"""
     second_opinion_sigmas: float = 3.0
@@ -207,6 +211,10 @@ class VerificationParameters:
     """s, t_test"""
     limit: float = 2.5
     """m/s"""
+    longest: float = 120.0
+    """s; a test goes on so long while the estimate is not yet good enough to be confirmed"""
+    drift: float = 2.5 * DEGREE
+    """rad; the estimate must not move farther from the candidate during the test"""
     by_energy: bool = True
     """compare the work of the forward specific force with kinetic and potential energy; False: (5.6) as printed"""
 

@@ -121,6 +121,7 @@ SETTLING = np.dtype(
         ("mount_q_vs", "f8", (4,)),
         ("mount_sigma", "f8", (3,)),
         ("mount_error", "f8"),  # m/s, of its drive test
+        ("mount_limit", "f8"),  # m/s
         ("has_mount", "?"),
         ("suspect", "?"),
     ]
@@ -134,8 +135,14 @@ VERIFICATION = np.dtype(
         ("sigma", "f8", (3,)),
         ("elapsed", "f8"),  # s of driving
         ("distance", "f8"),  # m
-        ("excess", "f8"),  # m2/s2 or m/s: integrated specific force minus what the GPS shows
+        ("excess", "f8"),  # m/s, integrated specific force minus what the GPS shows (thesis)
+        ("impulse", "f8", (3,)),  # m2/s2, integral of speed times specific force, sensor frame
+        ("energy", "f8"),  # m2/s2, kinetic energy gained
+        ("height", "f8"),  # m gained
+        ("turning", "f8"),  # m/s2, integral of speed times squared yaw rate
+        ("altitude", "f8"),  # m, at the last epoch
         ("error", "f8"),  # m/s
+        ("limit", "f8"),  # m/s
     ]
 )
 
