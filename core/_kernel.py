@@ -1711,7 +1711,7 @@ def judge_test(p, s, v, m):
     difference(s["average"], v["q_vs"], d)
     if d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > p["verification_drift"] ** 2:
         return REASON_MOVED_ON
-    return REASON_NONE if s["agrees"] else REASON_SECOND_OPINION
+    return REASON_NONE
 
 
 @njit(cache=True, nogil=True)
@@ -1727,10 +1727,10 @@ def verify(p, s, v, m, e, sigma, events, count):
         return count
     reason = judge_test(p, s, v, m)
     by_energy = p["verification_by_energy"]
-    if reason == REASON_NONE and by_energy and not sure(p, sigma) and v["elapsed"] < p["verification_longest"]:
-        return count  # more of the same drive makes the test longer and the estimate better
-    if reason == REASON_NONE and by_energy and not sure(p, sigma):
-        reason = REASON_UNSURE
+    if reason == REASON_NONE and by_energy and not (sure(p, sigma) and s["agrees"]):
+        if v["elapsed"] < p["verification_longest"]:
+            return count  # more of the same drive makes the test longer and the estimate better
+        reason = REASON_UNSURE if s["agrees"] else REASON_SECOND_OPINION
     v["state"] = 2 if reason == REASON_NONE else 3
     code = PASSED if reason == REASON_NONE else FAILED
     elapsed, error, limit = v["elapsed"], v["error"], v["limit"]

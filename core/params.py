@@ -185,11 +185,11 @@ class SettlingParameters:
     """rad/s; STABLE when the average turns slower"""
     reliable_yaw_rate: float = 0.0
     """rad/s; RELIABLE when exceeded (thesis); 0 = RELIABLE is a statement about information, below"""
-    start_yaw_sigma: float = 2.6 * DEGREE
+    start_yaw_sigma: float = 3.0 * DEGREE
     """rad; RELIABLE, and so ready for the drive test, below"""
     start_tilt_sigma: float = 1.6 * DEGREE
     """rad; RELIABLE below"""
-    yaw_sigma: float = 1.4 * DEGREE
+    yaw_sigma: float = 1.5 * DEGREE
     """rad; confirmed below"""
     tilt_sigma: float = 1.3 * DEGREE
     """rad; confirmed below"""
