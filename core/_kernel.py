@@ -45,6 +45,11 @@ DUPLICATE_TIME, BEFORE_PREVIOUS, FIX_WITHOUT_VELOCITY, FIX_IMPLAUSIBLE = range(4
 NO_EPOCH, BROKEN, COMPLETE = range(3)
 """What a fix makes of the epoch before it."""
 
+IDLE, WATCHING, SUSPICIOUS = range(3)
+"""States of the watch for an orientation change."""
+MOST_EVIDENCE = 1e6
+"""Largest value kept of the evidence series."""
+
 STARTED, PASSED, FAILED, CONFIRMED, CHANGED = range(5)
 """Event codes."""
 REASON_NONE, REASON_DRIVE_TEST, REASON_SECOND_OPINION, REASON_MOVED_ON, REASON_UNSURE = range(5)
@@ -1080,6 +1085,9 @@ def predict(p, m, period, n):
     if not p["filter_constant_over_epoch"]:
         add_thesis_noise(p, m, cov, period)
     add_slow_noise(p, m, cov, period, distance)
+    for i in range(n):
+        for j in range(i):
+            cov[j, i] = cov[i, j]
 
 
 @njit(cache=True, nogil=True)
@@ -1313,11 +1321,11 @@ def update(p, m, e, n):
             learn_noise(p, m, 1, (innovation * innovation - variance) / p["filter_altitude_noise"] ** 2)
         elif row < VELOCITY:
             learn_noise(p, m, 2, (innovation * innovation - variance) / p["filter_accelerometer_noise"] ** 2)
+        scale = 1.0 / total
         for i in range(n):
-            gain = ph[i] / total
-            dx[i] += gain * innovation
+            dx[i] += ph[i] * innovation * scale
             for j in range(n):
-                cov[i, j] -= gain * ph[j]
+                cov[i, j] -= ph[i] * ph[j] * scale  # this order of factors keeps the matrix exactly symmetric
     fold(p, m, dx)
     if not math.isfinite(m["altitude"]) and math.isfinite(e["altitude"]) and math.isfinite(p["filter_altitude_noise"]):
         begin_altitude(m, e["altitude"], p["filter_altitude_noise"])
@@ -1600,62 +1608,100 @@ def clear_sums(a):
 
 
 @njit(cache=True, nogil=True)
-def look_for_change(p, g, w, s):
-    """Cumulative sum of what the fresh window says against the confirmed mounting; True when it decides."""
-    d, total = np.empty(3), np.empty((3, 3))
-    difference(w["q_vs"], s["mount_q_vs"], d)
+def begin_window(p, g, mekf, s, keep_reference):
+    """Let the challenger begin anew: it knows what the filter knows, but nothing of the mounting.
+
+    It is compared with what the filter made of all the driving before, unless that has left the confirmed mounting.
+    """
+    m, n = mekf[0], mekf[1]
+    if not keep_reference:
+        d = np.empty(3)
+        difference(m["q_vs"], s["mount_q_vs"], d)
+        near = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 < p["change_reference_angle"] ** 2
+        g["reference"][:] = m["q_vs"] if near else s["mount_q_vs"]
+        g["covariance"][:] = 0.0
+        if near:
+            g["covariance"][:] = mounting_covariance(m)
+        for i in range(3):
+            g["covariance"][i, i] += p["settling_systematic_sigma"] ** 2 if near else s["mount_sigma"][i] ** 2
+    mekf[1] = mekf[0]
+    clear_state(n["covariance"], MOUNTING, MOUNTING + 3)
+    for i in range(3):
+        n["covariance"][MOUNTING + i, MOUNTING + i] = p["change_sigma"] ** 2
+    g["age"] = 0.0
+    g["looked"] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def look(p, g, n, d):
+    """Squared Mahalanobis distance of the challenger's mounting from the reference; `d` is their difference."""
+    total = np.empty((3, 3))
+    difference(n["q_vs"], g["reference"], d)
+    covariance = mounting_covariance(n)
     for i in range(3):
         for j in range(3):
-            total[i, j] = w["covariance"][i, j]
-        total[i, i] += s["mount_sigma"][i] ** 2 + p["settling_systematic_sigma"] ** 2
-    distance = mahalanobis(d, total)
-    before = g["evidence"]
-    gain = min(distance - p["change_allowance"], p["change_cap"])
-    if gain > 0 or largest_sigma(w["covariance"]) < p["change_acquit_sigma"]:  # a young window cannot acquit
-        g["evidence"] = max(0.0, before + gain)
-    if before == 0.0 and g["evidence"] > 0.0:
-        clear_sums(w)  # from here on only data from after the first suspicion count
-        g["looked_time"] = 0.0
-        return False
-    angle = math.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
-    return g["evidence"] > p["change_threshold"] and angle > p["change_min_angle"]
+            total[i, j] = covariance[i, j] + g["covariance"][i, j]
+        total[i, i] += p["settling_systematic_sigma"] ** 2
+    return mahalanobis(d, total)
 
 
 @njit(cache=True, nogil=True)
-def watch_for_change(p, g, w, s, a, e, k, b):
-    """Feed the forgetting window and look at it every few seconds of motion; True when the device has moved."""
-    forget(w, math.exp(-e["period"] / p["change_window"]))
-    g["looked_time"] *= math.exp(-e["period"] / p["change_window"])
-    accumulate(p, w, e, k, a["hypothesis"], 1)
-    if w["time"] - g["looked_time"] < p["change_interval"]:
-        return False
-    g["looked_time"] = w["time"]
-    w["hypothesis"] = a["hypothesis"]
-    w["noise_density"] = max(a["noise_density"], w["noise_density"])
-    solve_coarse(p, w, b, False)
-    return look_for_change(p, g, w, s)
+def keep_evidence(g, t, distance):
+    """Append a look to the series that an alert shows."""
+    size = g["series"].shape[0]
+    g["series_head"] = (g["series_head"] + 1) % size
+    g["series_count"] = min(g["series_count"] + 1, size)
+    g["series"][g["series_head"], 0] = t
+    g["series"][g["series_head"], 1] = min(distance, MOST_EVIDENCE)
 
 
 @njit(cache=True, nogil=True)
-def begin_again(a, w, m, s, v, g):
-    """After an orientation change: the window becomes the coarse alignment, everything else starts anew."""
-    a["time"] = w["time"]
-    a["k"][:] = w["k"]
-    a["kk"][:] = w["kk"]
-    a["f"][:] = w["f"]
-    a["fk"][:] = w["fk"]
-    a["ff"][:] = w["ff"]
-    a["gyro_time"] = w["gyro_time"]
-    a["r"] = w["r"]
-    a["rr"] = w["rr"]
-    a["w"][:] = w["w"]
-    a["wr"][:] = w["wr"]
-    a["ww"][:] = w["ww"]
-    a["q_vs"][:] = w["q_vs"]
-    a["covariance"][:] = w["covariance"]
-    a["solved_time"] = w["time"]
-    clear_sums(w)
-    m["running"] = False
+def watch_for_change(p, c, g, mekf, a, s, e, scratch):
+    """Sequential test of the confirmed mounting by a challenger; True when the device has moved.
+
+    WATCHING, the challenger begins anew every window. A distance it should hardly ever show makes it begin once more at
+    once: SUSPICIOUS, it rests on data from after the suspicion alone, and decides, or acquits.
+    """
+    m, n = mekf[0], mekf[1]
+    if g["state"] == IDLE:
+        if m["running"] and m["aligned"]:
+            begin_window(p, g, mekf, s, False)
+            g["state"] = WATCHING
+            g["innocent_t"] = e["t"]
+        return False
+    if not step_filter(p, c, n, a, e, scratch):
+        return False
+    if e["moving"]:
+        g["age"] += e["period"]
+    if g["age"] - g["looked"] < p["change_interval"]:
+        return False
+    g["looked"] = g["age"]
+    d = np.empty(3)
+    distance = look(p, g, n, d)
+    keep_evidence(g, e["t"], distance)
+    sure = largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
+    if distance < p["change_innocent"]:
+        g["innocent_t"] = e["t"]
+    if g["state"] == WATCHING:
+        if distance > p["change_suspicion"]:
+            g["state"] = SUSPICIOUS
+            begin_window(p, g, mekf, s, True)
+        elif g["age"] > p["change_window"] and m["running"] and m["aligned"]:
+            begin_window(p, g, mekf, s, False)
+        return False
+    if (sure and distance < p["change_innocent"]) or g["age"] > 2 * p["change_window"]:
+        g["state"] = IDLE
+        return False
+    difference(n["q_vs"], s["mount_q_vs"], d)
+    far = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > p["change_min_angle"] ** 2
+    return sure and far and distance > p["change_decision"]
+
+
+@njit(cache=True, nogil=True)
+def begin_again(a, mekf, s, v, g):
+    """After an orientation change: the challenger becomes the filter, everything else starts anew."""
+    mekf[0] = mekf[1]
+    clear_sums(a)
     soft_start(s)
     s["confirmed"] = False
     s["suspect"] = True
@@ -1665,26 +1711,63 @@ def begin_again(a, w, m, s, v, g):
     v["state"] = 0
     v["elapsed"] = 0.0
     v["error"] = 0.0
-    g["evidence"] = 0.0
-    g["looked_time"] = 0.0
+    g["state"] = IDLE
+    g["series_count"] = 0
 
 
 @njit(cache=True, nogil=True)
-def write_event(events, count, t, code, q, sigma, elapsed, error, limit, angle, reason):
-    """Append a row: t, code, quaternion, sigma, elapsed, error, limit, angle, reason."""
+def write_event(events, count, t, code, reason):
+    """Append a row: t, code, reason; what follows is nan: quaternion, sigma, elapsed, error, limit, turn, since."""
     row = events[count]
+    row[:] = np.nan
     row[0] = t
     row[1] = code
-    for i in range(4):
-        row[2 + i] = q[i]
-    for i in range(3):
-        row[6 + i] = sigma[i]
-    row[9] = elapsed
-    row[10] = error
-    row[11] = limit
-    row[12] = angle
-    row[13] = reason
+    row[2] = reason
     return count + 1
+
+
+@njit(cache=True, nogil=True)
+def write_mounting(row, q, sigma):
+    """Fill in the mounting an event is about."""
+    for i in range(4):
+        row[3 + i] = q[i]
+    for i in range(3):
+        row[7 + i] = sigma[i]
+
+
+@njit(cache=True, nogil=True)
+def write_test(events, count, t, code, v, reason):
+    """Append an event of the drive test."""
+    row = events[count]
+    count = write_event(events, count, t, code, reason)
+    write_mounting(row, v["q_vs"], v["sigma"])
+    row[10] = v["elapsed"]
+    row[11] = v["error"]
+    row[12] = v["limit"]
+    return count
+
+
+@njit(cache=True, nogil=True)
+def write_change(p, events, evidence, count, t, n, s, g):
+    """Append an orientation change: the new mounting, the turn from the confirmed one, since when, and the evidence."""
+    row, sigma = events[count], np.empty(3)
+    mounting_sigma(p, n["covariance"], MOUNTING, sigma)
+    write_evidence(evidence, count, g)
+    count = write_event(events, count, t, CHANGED, REASON_NONE)
+    write_mounting(row, n["q_vs"], sigma)
+    difference(n["q_vs"], s["mount_q_vs"], row[13:16])
+    row[16] = g["innocent_t"]
+    return count
+
+
+@njit(cache=True, nogil=True)
+def write_evidence(evidence, count, g):
+    """Copy the series, oldest look first, the rest nan."""
+    size = g["series"].shape[0]
+    evidence[count, :, :] = np.nan
+    for i in range(g["series_count"]):
+        back = g["series_count"] - 1 - i
+        evidence[count, i, :] = g["series"][(g["series_head"] - back) % size, :]
 
 
 @njit(cache=True, nogil=True)
@@ -1733,10 +1816,7 @@ def verify(p, s, v, m, e, sigma, events, count):
         reason = REASON_UNSURE if s["agrees"] else REASON_SECOND_OPINION
     v["state"] = 2 if reason == REASON_NONE else 3
     code = PASSED if reason == REASON_NONE else FAILED
-    elapsed, error, limit = v["elapsed"], v["error"], v["limit"]
-    count = write_event(
-        events, count, e["t"], code, v["q_vs"], v["sigma"], elapsed, error, limit, np.nan, reason
-    )
+    count = write_test(events, count, e["t"], code, v, reason)
     if reason != REASON_NONE:
         s["progress"] = 0.0
         soft_start(s)
@@ -1745,11 +1825,9 @@ def verify(p, s, v, m, e, sigma, events, count):
         v["q_vs"][:] = s["average"]
         v["bias"][:] = m["bias"]
         v["sigma"][:] = sigma
-        v["error"] = error = drive_error(v, m, v["q_vs"], v["bias"])
+        v["error"] = drive_error(v, m, v["q_vs"], v["bias"])
     confirm(s, v, e["t"])
-    return write_event(
-        events, count, e["t"], CONFIRMED, v["q_vs"], v["sigma"], elapsed, error, limit, np.nan, REASON_NONE
-    )
+    return write_test(events, count, e["t"], CONFIRMED, v, REASON_NONE)
 
 
 @njit(cache=True, nogil=True)
@@ -1770,24 +1848,22 @@ def recover_filter(p, m, a, s):
 
 
 @njit(cache=True, nogil=True)
-def process_epoch(p, c, a, w, x, m, s, v, g, e, scratch, b, events, count):
-    """All stages in order for one epoch; gives the number of events so far."""
-    k, sigma = scratch[6][:3], scratch[7][:3]
-    informative = e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])
-    if not informative:
+def align_coarsely(p, c, a, x, s, e, scratch, b):
+    """Feed the coarse alignment with the epochs in motion."""
+    if not (e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])):
         x["period"] = 0.0
     elif merge_epoch(p, c, x, e, scratch):
+        k = scratch[6][:3]
         kinematics(x, k)
         update_coarse(p, a, x, k, b)
         excite(p, s, x, k)
-        if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, g, w, s, a, x, k, b):
-            d = np.empty(3)
-            difference(w["q_vs"], s["mount_q_vs"], d)
-            angle = math.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
-            mounting_sigma(p, w["covariance"], 0, sigma)
-            count = write_event(events, count, e["t"], CHANGED, w["q_vs"], sigma, 0.0, 0.0, 0.0, angle, REASON_NONE)
-            begin_again(a, w, m, s, v, g)
-            return count
+
+
+@njit(cache=True, nogil=True)
+def process_epoch(p, c, a, x, mekf, s, v, g, e, scratch, b, events, evidence, count):
+    """All stages in order for one epoch; gives the number of events so far."""
+    m, sigma = mekf[0], scratch[7][:3]
+    align_coarsely(p, c, a, x, s, e, scratch, b)
     if not step_filter(p, c, m, a, e, scratch):
         return count
     mounting_sigma(p, m["covariance"], MOUNTING, sigma)
@@ -1796,8 +1872,11 @@ def process_epoch(p, c, a, w, x, m, s, v, g, e, scratch, b, events, count):
         return verify(p, s, v, m, e, sigma, events, count)
     if s["stable"] and s["reliable"] and not s["confirmed"]:
         start_verification(v, s, m, sigma)
-        return write_event(events, count, e["t"], STARTED, v["q_vs"], v["sigma"], 0.0, 0.0, 0.0, np.nan, REASON_NONE)
+        return write_test(events, count, e["t"], STARTED, v, REASON_NONE)
     recover_filter(p, m, a, s)
+    if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, c, g, mekf, a, s, e, scratch):
+        count = write_change(p, events, evidence, count, e["t"], mekf[1], s, g)
+        begin_again(a, mekf, s, v, g)
     return count
 
 
@@ -1900,11 +1979,11 @@ def report(p, c, a, m, s, v, rows, count):
 
 @njit(cache=True, nogil=True)
 def run(
-    params, clock, coarse, window, merged, mekf, settling, verification, change, epochs,
-    t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, counts,
+    params, clock, coarse, merged, mekf, settling, verification, change, epochs,
+    t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, evidence, counts,
 ):  # fmt: skip
     """Take all samples of a chunk; mutates the state records; gives the number of rows and of events."""
-    p, c, a, w, x, m = params[0], clock[0], coarse[0], window[0], merged[0], mekf[0]
+    p, c, a, x, m = params[0], clock[0], coarse[0], merged[0], mekf[0]
     s, v, g, e = settling[0], verification[0], change[0], epochs[0]
     scratch = np.zeros((8, 8))
     b = np.zeros((3, 3))
@@ -1918,7 +1997,9 @@ def run(
             if fix_valid[next_fix] and t[i - 1] == c["t"]:
                 end = take_fix(p, c, e, t[i - 1], fixes[next_fix], counts, scratch)
                 if end == COMPLETE:
-                    event_count = process_epoch(p, c, a, w, x, m, s, v, g, e, scratch, b, events, event_count)
+                    event_count = process_epoch(
+                        p, c, a, x, mekf, s, v, g, e, scratch, b, events, evidence, event_count
+                    )
                 if end != NO_EPOCH:
                     start_epoch(c, t[i - 1], e["next_speed"], e["next_course"])
             next_fix += 1

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import _kernel
-from core.events import Estimate, Estimates, Event, EventKind, Mount, Needs, Outcome, Stage, Status, Verification
+from core.events import Estimate, Estimates, Event, EventKind, Evidence, Mount, Needs, Outcome, Stage, Status, Verification
 from core.params import Parameters, as_record
 from core.samples import Samples
-from core.state import State, empty_clock, empty_state
+from core.state import LOOKS, State, empty_clock, empty_state
 
 Floats = NDArray[np.float64]
 
@@ -35,6 +35,7 @@ _REASONS = (
     "the drive did not show the mounting well enough",
 )
 _ROW = 14
+_EVENT_ROW = 18
 _EVENTS_PER_FIX = 2
 
 
@@ -79,7 +80,9 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
     """
     state = state.copy()
     rows = np.zeros((_row_limit(params, samples), _ROW))
-    events = np.zeros((_EVENTS_PER_FIX * samples.fix_row.size + 1, _ROW))
+    limit = _EVENTS_PER_FIX * samples.fix_row.size + 1
+    events = np.zeros((limit, _EVENT_ROW))
+    evidence = np.empty((limit, LOOKS, 2))
     counts = np.zeros(len(REJECTIONS), np.int64)
     row_count, event_count = _kernel.run(
         as_record(params),
@@ -93,6 +96,7 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
         samples.fix,
         rows,
         events,
+        evidence,
         counts,
     )
     outcome = Outcome(
@@ -100,7 +104,7 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
         fixes=int(samples.fix_valid.sum()) - int(counts[2] + counts[3]),
         rejected={reason: int(n) for reason, n in zip(REJECTIONS, counts, strict=True) if n},
         estimates=_estimates(rows[:row_count]),
-        events=tuple(_event(params, row) for row in events[:event_count]),
+        events=tuple(_event(params, row, series) for row, series in zip(events[:event_count], evidence, strict=False)),
         status=status(params, state),
     )
     return state, outcome
@@ -150,20 +154,18 @@ def _estimates(rows: Floats) -> Estimates:
     )
 
 
-def _event(params: Parameters, row: Floats) -> Event:
+def _event(params: Parameters, row: Floats, series: Floats) -> Event:
     kind = _EVENT_KINDS[int(row[1])]
-    change = kind is EventKind.ORIENTATION_CHANGED
+    reason = _REASONS[int(row[2])]
+    event = Event(float(row[0]), kind, row[3:7].copy(), row[7:10].copy(), None, None, reason)
+    if kind is EventKind.ORIENTATION_CHANGED:
+        angle = float(np.linalg.norm(row[13:16]))
+        looks = series[np.isfinite(series[:, 0])]
+        evidence = Evidence(looks[:, 0].copy(), looks[:, 1].copy(), params.change.decision)
+        return event._replace(angle=angle, axis=row[13:16] / angle, since=float(row[16]), evidence=evidence)
     state = {EventKind.VERIFICATION_STARTED: "running", EventKind.VERIFICATION_FAILED: "failed"}.get(kind, "passed")
-    test = params.verification
-    return Event(
-        t=float(row[0]),
-        kind=kind,
-        quaternion=row[2:6].copy(),
-        sigma=row[6:9].copy(),
-        verification=None if change else Verification(state, float(row[9]), test.duration, float(row[10]), float(row[11])),
-        angle=float(row[12]) if change else None,
-        reason=_REASONS[int(row[13])],
-    )
+    duration = params.verification.duration
+    return event._replace(verification=Verification(state, float(row[10]), duration, float(row[11]), float(row[12])))
 
 
 def _verification(params: Parameters, state: State) -> Verification:

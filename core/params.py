@@ -221,22 +221,26 @@ class VerificationParameters:
 
 @dataclass(frozen=True)
 class ChangeParameters:
-    """Orientation change (thesis 5.5): cumulative sum over a forgetting coarse alignment."""
+    """Orientation change (thesis 5.5): a second filter, the challenger, that knows nothing of the mounting."""
 
-    window: float = 120.0
-    """s of motion, forgetting time; infinite = no detection"""
+    window: float = 240.0
+    """s of motion after which the challenger begins anew; infinite = no detection"""
     interval: float = 5.0
     """s of motion between two looks"""
-    acquit_sigma: float = 5.0 * DEGREE
-    """rad; a look takes evidence away only when the largest sigma of the window is below"""
-    allowance: float = 12.0
-    """squared Mahalanobis distance (3 degrees of freedom) a look may show without adding evidence"""
-    threshold: float = 60.0
-    """evidence that decides"""
-    cap: float = 25.0
-    """one look adds at most this much evidence"""
+    sigma: float = 25 * DEGREE
+    """rad, what the challenger begins with, per axis"""
+    suspicion: float = 14.0
+    """squared Mahalanobis distance (3 degrees of freedom) that makes it begin anew, on new data alone"""
+    decision: float = 24.0
+    """the distance that decides then"""
+    innocent: float = 6.0
+    """a distance below speaks for the confirmed mounting"""
+    sure_sigma: float = 4.0 * DEGREE
+    """rad; the challenger decides and acquits when its largest sigma is below"""
     min_angle: float = 4.0 * DEGREE
     """rad; smaller changes are not reported"""
+    reference_angle: float = 2.0 * DEGREE
+    """rad; the filter is the reference, being better than the confirmed mounting, while it is no farther from that"""
 
 
 @dataclass(frozen=True)
@@ -302,7 +306,7 @@ THESIS = Parameters(
     ),
     settling=SettlingParameters(average_window=math.inf, reliable_yaw_rate=0.15, systematic_sigma=0.0),
     verification=VerificationParameters(by_energy=False),
-    change=ChangeParameters(min_angle=15 * DEGREE),
+    change=ChangeParameters(min_angle=15 * DEGREE, window=math.inf),
 )
 """Table 5.1 (variances at T = 0.25 s), n = 100, 40 s and 2.5 m/s, RELIABLE by yaw rate (thesis 5.2-5.4)."""
 

@@ -15,6 +15,8 @@ RING = 52
 AVERAGE_EPOCHS = 100
 """n of the moving average (thesis 5.3)"""
 MAX_LATENCIES = 9
+LOOKS = 40
+"""looks kept as evidence"""
 
 CLOCK = np.dtype(
     [
@@ -106,7 +108,7 @@ FILTER = np.dtype(
 
 SETTLING = np.dtype(
     [
-        ("ring", "f8", (AVERAGE_EPOCHS, 4)),
+        ("ring", "f4", (AVERAGE_EPOCHS, 4)),
         ("head", "i8"),
         ("count", "i8"),
         ("average", "f8", (4,)),
@@ -148,22 +150,28 @@ VERIFICATION = np.dtype(
 
 CHANGE = np.dtype(
     [
-        ("evidence", "f8"),
-        ("looked_time", "f8"),  # value of the window's `time` at the last look
+        ("state", "i8"),  # 0 idle, 1 watching, 2 suspicious
+        ("reference", "f8", (4,)),  # q_vs the challenger is compared with
+        ("covariance", "f8", (3, 3)),  # rad2, of the reference
+        ("age", "f8"),  # s of motion since the challenger began
+        ("looked", "f8"),  # s, age at the last look
+        ("innocent_t", "f8"),  # s, last time nothing spoke against the mounting
+        ("series", "f4", (LOOKS, 2)),  # s, squared Mahalanobis distance
+        ("series_head", "i8"),
+        ("series_count", "i8"),
     ]
 )
 
 
 class State(NamedTuple):
-    """State of one device's estimator: structured arrays of shape (1,)."""
+    """State of one device's estimator: structured arrays of shape (1,) but for the filter."""
 
     clock: NDArray[np.void]
     coarse: NDArray[np.void]
-    window: NDArray[np.void]
-    """forgetting coarse alignment for the orientation change, a `COARSE` record"""
     merged: NDArray[np.void]
     """the epoch the coarse alignment is collecting, a `MERGED` record"""
     filter: NDArray[np.void]
+    """shape (2,): the filter, and the challenger that watches for an orientation change"""
     settling: NDArray[np.void]
     verification: NDArray[np.void]
     change: NDArray[np.void]
@@ -173,7 +181,7 @@ class State(NamedTuple):
         return State(*(part.copy() for part in self))
 
 
-LAYOUT = State(CLOCK, COARSE, COARSE, MERGED, FILTER, SETTLING, VERIFICATION, CHANGE)  # type: ignore[arg-type]
+LAYOUT = State(CLOCK, COARSE, MERGED, FILTER, SETTLING, VERIFICATION, CHANGE)  # type: ignore[arg-type]
 """The dtype of each part."""
 
 
@@ -201,14 +209,13 @@ def empty_state() -> State:
     state = State(
         empty_clock(),
         empty_coarse(),
-        empty_coarse(),
         np.zeros(1, MERGED),
-        np.zeros(1, FILTER),
+        np.zeros(2, FILTER),
         np.zeros(1, SETTLING),
         np.zeros(1, VERIFICATION),
         np.zeros(1, CHANGE),
     )
-    state.filter["q_nv"][0, 0] = state.filter["q_vs"][0, 0] = 1.0
+    state.filter["q_nv"][:, 0] = state.filter["q_vs"][:, 0] = 1.0
     state.settling["average"][0, 0] = 1.0
     state.filter["altitude"] = np.nan
     return state
