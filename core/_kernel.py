@@ -1608,26 +1608,39 @@ def clear_sums(a):
 
 
 @njit(cache=True, nogil=True)
-def begin_window(p, g, mekf, s, keep_reference):
+def begin_window(p, g, mekf, s):
     """Let the challenger begin anew: it knows what the filter knows, but nothing of the mounting.
 
     It is compared with what the filter made of all the driving before, unless that has left the confirmed mounting.
     """
-    m, n = mekf[0], mekf[1]
-    if not keep_reference:
-        d = np.empty(3)
-        difference(m["q_vs"], s["mount_q_vs"], d)
-        near = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 < p["change_reference_angle"] ** 2
-        g["reference"][:] = m["q_vs"] if near else s["mount_q_vs"]
-        g["covariance"][:] = 0.0
-        if near:
-            g["covariance"][:] = mounting_covariance(m)
-        for i in range(3):
-            g["covariance"][i, i] += p["settling_systematic_sigma"] ** 2 if near else s["mount_sigma"][i] ** 2
+    m, n, d = mekf[0], mekf[1], np.empty(3)
+    difference(m["q_vs"], s["mount_q_vs"], d)
+    near = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 < p["change_reference_angle"] ** 2
+    g["reference"][:] = m["q_vs"] if near else s["mount_q_vs"]
+    g["covariance"][:] = 0.0
+    if near:
+        g["covariance"][:] = mounting_covariance(m)
+    for i in range(3):
+        g["covariance"][i, i] += p["settling_systematic_sigma"] ** 2 if near else s["mount_sigma"][i] ** 2
     mekf[1] = mekf[0]
     clear_state(n["covariance"], MOUNTING, MOUNTING + 3)
     for i in range(3):
         n["covariance"][MOUNTING + i, MOUNTING + i] = p["change_sigma"] ** 2
+    g["state"] = WATCHING
+    g["age"] = 0.0
+    g["looked"] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def suspect(p, g, n, e):
+    """Let the challenger begin from where it is, knowing nothing else: it may have been turned far, and the filter, whose
+    road and biases have made up for that, is no help."""
+    covariance = np.zeros((3, 3))
+    for i in range(3):
+        covariance[i, i] = p["change_sigma"] ** 2
+    start_filter(p, n, e, n["q_vs"].copy(), covariance, np.zeros(3), n["latency"])
+    n["refined"] = False
+    g["state"] = SUSPICIOUS
     g["age"] = 0.0
     g["looked"] = 0.0
 
@@ -1665,8 +1678,7 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
     m, n = mekf[0], mekf[1]
     if g["state"] == IDLE:
         if m["running"] and m["aligned"]:
-            begin_window(p, g, mekf, s, False)
-            g["state"] = WATCHING
+            begin_window(p, g, mekf, s)
             g["innocent_t"] = e["t"]
         return False
     if not step_filter(p, c, n, a, e, scratch):
@@ -1679,15 +1691,14 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
     d = np.empty(3)
     distance = look(p, g, n, d)
     keep_evidence(g, e["t"], distance)
-    sure = largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
+    sure = n["refined"] and largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
     if distance < p["change_innocent"]:
         g["innocent_t"] = e["t"]
     if g["state"] == WATCHING:
-        if distance > p["change_suspicion"]:
-            g["state"] = SUSPICIOUS
-            begin_window(p, g, mekf, s, True)
+        if distance > p["change_suspicion"] and e["moving"] and math.isfinite(e["course"]):
+            suspect(p, g, n, e)
         elif g["age"] > p["change_window"] and m["running"] and m["aligned"]:
-            begin_window(p, g, mekf, s, False)
+            begin_window(p, g, mekf, s)
         return False
     if (sure and distance < p["change_innocent"]) or g["age"] > 2 * p["change_window"]:
         g["state"] = IDLE

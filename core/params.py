@@ -235,7 +235,7 @@ class ChangeParameters:
     """the distance that decides then"""
     innocent: float = 6.0
     """a distance below speaks for the confirmed mounting"""
-    sure_sigma: float = 4.0 * DEGREE
+    sure_sigma: float = 3.0 * DEGREE
     """rad; the challenger decides and acquits when its largest sigma is below"""
     min_angle: float = 4.0 * DEGREE
     """rad; smaller changes are not reported"""
