@@ -50,8 +50,10 @@ IDLE, WATCHING, SUSPICIOUS = range(3)
 MOST_EVIDENCE = 1e6
 """Largest value kept of the evidence series."""
 
-STARTED, PASSED, FAILED, CONFIRMED, CHANGED = range(5)
+STARTED, PASSED, FAILED, CONFIRMED, CHANGED, FAULT = range(6)
 """Event codes."""
+LEFT_HANDED, STUCK_AXIS, SATURATED, LOOSE = range(4)
+"""Faults."""
 REASON_NONE, REASON_DRIVE_TEST, REASON_SECOND_OPINION, REASON_MOVED_ON, REASON_UNSURE = range(5)
 
 EPOCH = np.dtype(
@@ -77,6 +79,7 @@ EPOCH = np.dtype(
         ("f_slope", "f8", (3,)),  # its change with time, m/s3
         ("w_slope", "f8", (3,)),
         ("gyro", "?"),
+        ("flat_tops", "i8"),  # samples at the end of the range
         ("next_speed", "f8"),  # of the fix that ends it and begins the next
         ("next_course", "f8"),
     ]
@@ -261,6 +264,7 @@ def integrate(p, c, t, f_s, w_s, first, stop, counts):
         i += 1
         if not time < report:
             break
+    c["samples"] += i - first
     c["t"], c["no_gyro"] = now, blind
     c["f_s"][0], c["f_s"][1], c["f_s"][2] = fx, fy, fz
     c["w_s"][0], c["w_s"][1], c["w_s"][2] = wx, wy, wz
@@ -425,6 +429,7 @@ def start_epoch(c, t, speed, course):
     c["fix_altitude"] = c["altitude"]
     c["fix_integral"][:] = c["integral"]
     c["flat_tops"] = 0
+    c["samples"] = 0
 
 
 @njit(cache=True, nogil=True)
@@ -482,6 +487,7 @@ def take_fix(p, c, e, t, fix, counts, scratch):
         if not complete:
             counts[FIX_IMPLAUSIBLE] += 1
         e["usable"] = complete and not c["reversing"] and c["flat_tops"] == 0
+        e["flat_tops"] = c["flat_tops"]
     e["next_speed"] = speed
     e["next_course"] = course
     return COMPLETE if complete else BROKEN
@@ -829,6 +835,9 @@ def update_coarse(p, a, e, k, b):
         (a["time"] - e["period"]) / (5 * interval)
     )
     solve_coarse(p, a, b, choose or not math.isfinite(a["solved_time"]))
+    if choose:
+        noise = a["noise_density"]
+        a["mirror"] = mirror_evidence(a, a["hypothesis"], noise / p["coarse_bias_sigma"] ** 2, noise, b)
     return True
 
 
@@ -1493,7 +1502,7 @@ def settle(p, s, m, a, e, sigma):
         s["reliable"] = s["reliable"] or turning
         s["agrees"] = True
         return
-    s["agrees"] = second_opinion(p, m, a)
+    s["agrees"] = second_opinion(p, m, a) and a["mirror"] < p["fault_mirror_doubt"]
     informed = max(sigma[0], sigma[1]) < p["settling_start_tilt_sigma"] and sigma[2] < p["settling_start_yaw_sigma"]
     excited = s["forward_excitation"] + s["lateral_excitation"] > p["settling_excitation"]
     s["reliable"] = informed and excited and s["agrees"]
@@ -1859,6 +1868,74 @@ def recover_filter(p, m, a, s):
 
 
 @njit(cache=True, nogil=True)
+def watch_axes(p, c, f, e):
+    """Axes that repeat one value in motion while another moves, and readings at the end of the range."""
+    period = e["period"]
+    f["saturation"] *= math.exp(-period / p["fault_saturation_memory"])
+    if e["flat_tops"] > 0:
+        f["saturation"] += period
+    moves = False
+    for j in range(3):
+        moves = moves or c["repeats"][j] < c["samples"] // 2
+    for j in range(3):
+        if moves and e["moving"] and c["samples"] > 3 and c["repeats"][j] >= c["samples"]:
+            f["stuck_time"][j] += period
+        elif e["moving"] or not moves:
+            f["stuck_time"][j] = 0.0
+        if f["stuck_time"][j] > p["fault_stuck_doubt"]:
+            e["usable"] = False
+
+
+@njit(cache=True, nogil=True)
+def report_fault(p, f, which, holds, since, events, evidence, count):
+    """Report a fault when it begins; it may be reported again once it was over."""
+    bit = 1 << which
+    if not holds:
+        f["reported"] &= ~bit
+        return count
+    if f["reported"] & bit:
+        return count
+    f["reported"] |= bit
+    row = events[count]
+    evidence[count, :, :] = np.nan
+    count = write_event(events, count, f["t"], FAULT, REASON_NONE)
+    row[16] = since
+    row[17] = which
+    return count
+
+
+@njit(cache=True, nogil=True)
+def find_faults(p, c, a, f, e, events, evidence, count):
+    """Faults of the sensor: mirrored axes, a stuck axis, readings at the end of the range."""
+    watch_axes(p, c, f, e)
+    f["t"] = e["t"]
+    stuck = max(f["stuck_time"][0], f["stuck_time"][1], f["stuck_time"][2])
+    long_stuck = stuck > p["fault_stuck_time"]
+    saturated = f["saturation"] > p["fault_saturation_time"]
+    if math.isfinite(a["solved_time"]):
+        mirrored = a["mirror"] > p["fault_mirror"]
+        count = report_fault(p, f, LEFT_HANDED, mirrored, np.nan, events, evidence, count)
+    count = report_fault(p, f, STUCK_AXIS, long_stuck, e["t"] - stuck, events, evidence, count)
+    return report_fault(p, f, SATURATED, saturated, np.nan, events, evidence, count)
+
+
+@njit(cache=True, nogil=True)
+def watch_looseness(p, f, g, t, changed, moved_on, events, evidence, count):
+    """A device whose mounting changes again and again is loose: each change counts, and fades with the hours."""
+    if changed or moved_on:
+        faded = f["restlessness"] * math.exp(-(t - f["restless_t"]) / p["fault_loose_memory"]) if t > f["restless_t"] else 0.0
+        f["restlessness"] = faded + (1.0 if changed else p["fault_moved_on_weight"])
+        f["restless_t"] = t
+    loose = f["restlessness"] > p["fault_loose"]
+    reported = count
+    count = report_fault(p, f, LOOSE, loose, f["restless_t"], events, evidence, count)
+    if count > reported:
+        write_evidence(evidence, reported, g)
+        f["restlessness"] = 0.0
+    return count
+
+
+@njit(cache=True, nogil=True)
 def align_coarsely(p, c, a, x, s, e, scratch, b):
     """Feed the coarse alignment with the epochs in motion."""
     if not (e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])):
@@ -1871,22 +1948,27 @@ def align_coarsely(p, c, a, x, s, e, scratch, b):
 
 
 @njit(cache=True, nogil=True)
-def process_epoch(p, c, a, x, mekf, s, v, g, e, scratch, b, events, evidence, count):
+def process_epoch(p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence, count):
     """All stages in order for one epoch; gives the number of events so far."""
     m, sigma = mekf[0], scratch[7][:3]
+    count = find_faults(p, c, a, f, e, events, evidence, count)
     align_coarsely(p, c, a, x, s, e, scratch, b)
     if not step_filter(p, c, m, a, e, scratch):
         return count
     mounting_sigma(p, m["covariance"], MOUNTING, sigma)
     settle(p, s, m, a, e, sigma)
     if v["state"] == 1:
-        return verify(p, s, v, m, e, sigma, events, count)
+        before = count
+        count = verify(p, s, v, m, e, sigma, events, count)
+        moved_on = count > before and events[before, 2] == REASON_MOVED_ON
+        return watch_looseness(p, f, g, e["t"], False, moved_on, events, evidence, count)
     if s["stable"] and s["reliable"] and not s["confirmed"]:
         start_verification(v, s, m, sigma)
         return write_test(events, count, e["t"], STARTED, v, REASON_NONE)
     recover_filter(p, m, a, s)
     if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, c, g, mekf, a, s, e, scratch):
         count = write_change(p, events, evidence, count, e["t"], mekf[1], s, g)
+        count = watch_looseness(p, f, g, e["t"], True, False, events, evidence, count)
         begin_again(a, mekf, s, v, g)
     return count
 
@@ -1990,12 +2072,12 @@ def report(p, c, a, m, s, v, rows, count):
 
 @njit(cache=True, nogil=True)
 def run(
-    params, clock, coarse, merged, mekf, settling, verification, change, epochs,
+    params, clock, coarse, merged, mekf, settling, verification, change, faults, epochs,
     t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, evidence, counts,
 ):  # fmt: skip
     """Take all samples of a chunk; mutates the state records; gives the number of rows and of events."""
     p, c, a, x, m = params[0], clock[0], coarse[0], merged[0], mekf[0]
-    s, v, g, e = settling[0], verification[0], change[0], epochs[0]
+    s, v, g, f, e = settling[0], verification[0], change[0], faults[0], epochs[0]
     scratch = np.zeros((8, 8))
     b = np.zeros((3, 3))
     row_count, event_count, next_fix, i = 0, 0, 0, 0
@@ -2009,7 +2091,7 @@ def run(
                 end = take_fix(p, c, e, t[i - 1], fixes[next_fix], counts, scratch)
                 if end == COMPLETE:
                     event_count = process_epoch(
-                        p, c, a, x, mekf, s, v, g, e, scratch, b, events, evidence, event_count
+                        p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence, event_count
                     )
                 if end != NO_EPOCH:
                     start_epoch(c, t[i - 1], e["next_speed"], e["next_course"])

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import _kernel
-from core.events import Estimate, Estimates, Event, EventKind, Evidence, Mount, Needs, Outcome, Stage, Status, Verification
+from core.events import Estimate, Estimates, Event, EventKind, Evidence, Fault, Mount, Needs, Outcome, Stage, Status, Verification
 from core.params import Parameters, as_record
 from core.samples import Samples
 from core.state import LOOKS, State, empty_clock, empty_state
@@ -26,6 +26,13 @@ _EVENT_KINDS = (
     EventKind.VERIFICATION_FAILED,
     EventKind.CONFIRMED,
     EventKind.ORIENTATION_CHANGED,
+    EventKind.FAULT,
+)
+_FAULTS = (
+    (Fault.LEFT_HANDED, "The axes are a mirror image: no rotation explains how acceleration and turning go together."),
+    (Fault.STUCK_AXIS, "An axis of the accelerometer repeats one value while the vehicle moves."),
+    (Fault.SATURATED, "Readings rest at the end of the accelerometer's range."),
+    (Fault.DEVICE_LOOSE, "The mounting keeps changing: the device is loose."),
 )
 _REASONS = (
     None,
@@ -34,9 +41,10 @@ _REASONS = (
     "the estimate moved on while the candidate was tested",
     "the drive did not show the mounting well enough",
 )
+_WITH_EVIDENCE = (EventKind.ORIENTATION_CHANGED, EventKind.FAULT)
 _ROW = 14
 _EVENT_ROW = 18
-_EVENTS_PER_FIX = 2
+_EVENTS_PER_FIX = 6
 
 
 def initial_state(params: Parameters) -> State:
@@ -156,12 +164,16 @@ def _estimates(rows: Floats) -> Estimates:
 
 def _event(params: Parameters, row: Floats, series: Floats) -> Event:
     kind = _EVENT_KINDS[int(row[1])]
+    looks = series[np.isfinite(series[:, 0])] if kind in _WITH_EVIDENCE else series[:0]
+    evidence = Evidence(looks[:, 0].copy(), looks[:, 1].copy(), params.change.decision) if looks.size else None
+    if kind is EventKind.FAULT:
+        fault, sentence = _FAULTS[int(row[17])]
+        since = float(row[16]) if np.isfinite(row[16]) else None
+        return Event(float(row[0]), kind, None, None, None, None, sentence, None, since, evidence, fault)
     reason = _REASONS[int(row[2])]
     event = Event(float(row[0]), kind, row[3:7].copy(), row[7:10].copy(), None, None, reason)
     if kind is EventKind.ORIENTATION_CHANGED:
         angle = float(np.linalg.norm(row[13:16]))
-        looks = series[np.isfinite(series[:, 0])]
-        evidence = Evidence(looks[:, 0].copy(), looks[:, 1].copy(), params.change.decision)
         return event._replace(angle=angle, axis=row[13:16] / angle, since=float(row[16]), evidence=evidence)
     state = {EventKind.VERIFICATION_STARTED: "running", EventKind.VERIFICATION_FAILED: "failed"}.get(kind, "passed")
     duration = params.verification.duration

@@ -244,6 +244,30 @@ class ChangeParameters:
 
 
 @dataclass(frozen=True)
+class FaultParameters:
+    """Faults of the sensor, and a device that is loose."""
+
+    mirror: float = 25.0
+    """log likelihood ratio at which mirrored axes are reported"""
+    mirror_doubt: float = 6.0
+    """log likelihood ratio at which nothing is confirmed any more"""
+    stuck_time: float = 20.0
+    """s of motion in which an axis repeats one value while another moves, until it is reported"""
+    stuck_doubt: float = 2.0
+    """s of it after which epochs are not used"""
+    saturation_memory: float = 60.0
+    """s over which readings at the end of the range are counted"""
+    saturation_time: float = 6.0
+    """s of them that are reported"""
+    loose: float = 2.5
+    """changes of the mounting within `loose_memory` that make a device loose"""
+    loose_memory: float = 7200.0
+    """s in which a change fades"""
+    moved_on_weight: float = 0.5
+    """changes that a drive test counts as whose candidate the estimate left"""
+
+
+@dataclass(frozen=True)
 class Parameters:
     """All that is tuned."""
 
@@ -253,6 +277,7 @@ class Parameters:
     settling: SettlingParameters = field(default_factory=SettlingParameters)
     verification: VerificationParameters = field(default_factory=VerificationParameters)
     change: ChangeParameters = field(default_factory=ChangeParameters)
+    fault: FaultParameters = field(default_factory=FaultParameters)
     report_interval: float = 1.0
     """s of log time between two reported estimates"""
 
@@ -312,7 +337,7 @@ THESIS = Parameters(
 
 PRESETS = {"default": DEFAULT, "thesis": THESIS}
 
-_STAGES = ("epoch", "coarse", "filter", "settling", "verification", "change")
+_STAGES = ("epoch", "coarse", "filter", "settling", "verification", "change", "fault")
 
 
 def as_record(params: Parameters) -> NDArray[np.void]:

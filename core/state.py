@@ -48,6 +48,7 @@ CLOCK = np.dtype(
         ("next_report", "f8"),  # s
         ("repeats", "i8", (3,)),  # samples for which each axis has repeated itself
         ("flat_tops", "i8"),  # samples of the epoch at the end of the range
+        ("samples", "i8"),  # of the epoch
     ]
 )
 
@@ -68,6 +69,7 @@ COARSE = np.dtype(
         ("noise_density", "f8"),  # (m/s2)^2 s, residual variance times correlation time
         ("hypothesis", "i8"),  # the latency in use
         ("latency", "f8"),  # s, refined between hypotheses
+        ("mirror", "f8"),  # log likelihood ratio of mirrored to right-handed axes
         ("costs", "f8", (MAX_LATENCIES,)),  # -2 log likelihood of each latency above the best
         ("solved_time", "f8"),  # value of `time` at the last solution, nan = no solution
         ("q_vs", "f8", (4,)),
@@ -163,6 +165,18 @@ CHANGE = np.dtype(
 )
 
 
+FAULTS = np.dtype(
+    [
+        ("t", "f8"),  # s, last look
+        ("stuck_time", "f8", (3,)),  # s of motion for which each axis has repeated itself
+        ("saturation", "f8"),  # s of late with readings at the end of the range
+        ("restlessness", "f8"),  # changes of the mounting, fading with time
+        ("restless_t", "f8"),  # s, the last of them
+        ("reported", "i8"),  # a bit for each fault that goes on
+    ]
+)
+
+
 class State(NamedTuple):
     """State of one device's estimator: structured arrays of shape (1,) but for the filter."""
 
@@ -175,13 +189,14 @@ class State(NamedTuple):
     settling: NDArray[np.void]
     verification: NDArray[np.void]
     change: NDArray[np.void]
+    faults: NDArray[np.void]
 
     def copy(self) -> "State":
         """Give an independent copy."""
         return State(*(part.copy() for part in self))
 
 
-LAYOUT = State(CLOCK, COARSE, MERGED, FILTER, SETTLING, VERIFICATION, CHANGE)  # type: ignore[arg-type]
+LAYOUT = State(CLOCK, COARSE, MERGED, FILTER, SETTLING, VERIFICATION, CHANGE, FAULTS)  # type: ignore[arg-type]
 """The dtype of each part."""
 
 
@@ -214,6 +229,7 @@ def empty_state() -> State:
         np.zeros(1, SETTLING),
         np.zeros(1, VERIFICATION),
         np.zeros(1, CHANGE),
+        np.zeros(1, FAULTS),
     )
     state.filter["q_nv"][:, 0] = state.filter["q_vs"][:, 0] = 1.0
     state.settling["average"][0, 0] = 1.0
