@@ -8,7 +8,7 @@ The GPS antenna sits in the device unless the scenario says otherwise: the recei
 device's place, not of the vehicle's turning point.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from core import quaternion
 from core.samples import Samples
+from core.simulation_faults import Disturbances, disturb
 from core.simulation_motion import MARGIN, Motion, Trajectory, turn_back
 from core.simulation_routes import ROUTES, plan_route
 from core.simulation_sensors import (
@@ -39,7 +40,7 @@ class Scenario:
     """What to simulate. Rotations are quaternions q_vs, places are m from the turning point in vehicle axes."""
 
     route: str = "city"
-    """city, hills, straight, motorway, parked, roundabout, curves"""
+    """city, hills, straight, motorway, parked, roundabout, curves, constant, steep, crawl, towed, ferry"""
     seconds: float = 600.0
     seed: int = 0
     mount: ArrayLike | None = None
@@ -76,6 +77,10 @@ class Scenario:
     """the receiver states its accuracy"""
     ideal: bool = False
     """sensors and receiver without any error (latency and vibration stay)"""
+    disturbances: Disturbances = field(default_factory=Disturbances)
+    """what goes wrong with the recording"""
+    session: int = 0
+    """number of the drive: the seed chooses the device and its mounting, both together what is driven"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,8 +142,8 @@ def simulate(scenario: Scenario) -> Drive:
         unknown route or sensor, a rate or duration that is not positive.
     """
     _check(scenario)
-    rngs = [np.random.default_rng(s) for s in np.random.SeedSequence(scenario.seed).spawn(5)]
-    chosen, routing, riding, sensing, receiving = rngs
+    chosen = _generators(scenario.seed, 0)[0]
+    _, routing, riding, sensing, receiving, failing = _generators(scenario.seed, scenario.session)
     truth_of = _choose(scenario, chosen)
     plan = plan_route(scenario.route, scenario.seconds + MARGIN, scenario.reverse, routing)
     road = ROUTES[scenario.route].road.scaled(scenario.relief, scenario.vibration)
@@ -147,10 +152,21 @@ def simulate(scenario: Scenario) -> Drive:
     f_s, w_s = _readings(scenario, truth_of, trajectory, t, riding, sensing)
     rows, reported = _fix_rows(scenario, t)
     fix, valid = _fixes(scenario, truth_of, trajectory, reported, receiving)
-    samples = Samples.make(t, f_s, w_s, rows, valid, fix)
+    samples = disturb(Samples.make(t, f_s, w_s, rows, valid, fix), scenario.disturbances, failing)
     there = trajectory.at(t[rows])
-    truth = Truth(scenario, *truth_of, t[rows], _attitude(there), there.v_n, there.speed)
+    truth = Truth(scenario, *truth_of, samples.t[samples.fix_row], _attitude(there), there.v_n, there.speed)
     return Drive(samples, truth)
+
+
+def simulate_sessions(scenario: Scenario, count: int) -> list[Drive]:
+    """Simulate drives between which the device is switched off: one mounting, each with a clock of its own."""
+    return [simulate(replace(scenario, session=number)) for number in range(count)]
+
+
+def _generators(seed: int, session: int) -> list[np.random.Generator]:
+    """Choosing, routing, riding, sensing, receiving, failing."""
+    source = np.random.SeedSequence([seed, session] if session else seed)
+    return [np.random.default_rng(s) for s in source.spawn(6)]
 
 
 class _Chosen(NamedTuple):
@@ -254,6 +270,7 @@ def _fixes(
     receiver = Receiver(vertical_speed=scenario.vertical_speed, accuracy=scenario.accuracy)
     if scenario.ideal:
         receiver = Receiver(0.0, 0.0, 0.0, 0.0, 0.0, scenario.vertical_speed, scenario.accuracy)
+    receiver = receiver.with_altitude_noise(scenario.disturbances.altitude_noise)
     fix = gps_fixes(trajectory, reported - chosen.latency, chosen.antenna_arm, receiver, rng)
     lost = np.zeros(reported.size, np.bool_)
     for start, end in scenario.outages:
@@ -273,6 +290,8 @@ def _attitude(motion: Motion) -> Floats:
 
 def _plain(value: Any) -> Any:
     """Arrays to lists, for JSON."""
+    if isinstance(value, Disturbances):
+        return asdict(value)
     if isinstance(value, tuple | list):
         return [_plain(v) for v in value]
     return value.tolist() if isinstance(value, np.ndarray) else value

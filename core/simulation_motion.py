@@ -32,6 +32,8 @@ REAR_SLIP_PER_ACCELERATION = radians(2.0) / GRAVITY
 """rad per m/s2: the rear axle drifts outwards, the nose points into the curve"""
 BODY_FREQUENCY = 1.4
 """Hz, natural frequency of the body on its springs"""
+SWELL_PERIOD = (6.0, 12.0)
+"""s, periods at which a ship rolls and pitches"""
 
 
 def smooth_noise(rng: np.random.Generator, size: int, scale: float) -> Floats:
@@ -107,7 +109,7 @@ class Trajectory(NamedTuple):
     def of(cls, plan: Itinerary, road: Road, seconds: float, rng: np.random.Generator) -> Self:
         """Drive the planned route on a road."""
         t = np.arange(-MARGIN, seconds + MARGIN, STEP)
-        speed, curvature = _driven(plan, t, rng)
+        speed, curvature = _driven(plan, t, road.unsteadiness, rng)
         along = np.cumsum(speed) * STEP
         heading = rng.uniform(-np.pi, np.pi) + np.cumsum(speed * curvature) * STEP
         heading += radians(0.4) * _over_distance(along, 40.0, rng)
@@ -117,6 +119,11 @@ class Trajectory(NamedTuple):
         pitch = _suspension(-PITCH_PER_ACCELERATION * ahead) - grade + radians(0.15) * bounce[0]
         roll = _suspension(ROLL_PER_ACCELERATION * sideways) + bank + radians(0.2) * bounce[1]
         yaw = heading + REAR_SLIP_PER_ACCELERATION * sideways
+        pitch -= road.lifted
+        if road.swell:
+            yaw += rng.uniform(-np.pi, np.pi)
+            pitch += road.swell * _swell(t.size, rng)
+            roll += road.swell * _swell(t.size, rng)
         signals = np.stack([speed, heading, grade, 0.04 * bounce[2], yaw, pitch, roll], axis=-1)
         v_n = _path_velocity(speed, heading, grade)
         return cls(make_interp_spline(t, signals, k=5), make_interp_spline(t, v_n, k=3).antiderivative())
@@ -131,10 +138,10 @@ class Trajectory(NamedTuple):
         return Motion(yaw, pitch, roll, v_n, _path_acceleration(value.T, rate.T), w_v, dw_v, speed)
 
 
-def _driven(plan: Itinerary, t: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
+def _driven(plan: Itinerary, t: Floats, unsteadiness: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """Round the corners of the plan as a driver does; exactly still where the plan stands still."""
     speed, curvature = sample_route(plan, t)
-    pedal = 1 + 0.03 * smooth_noise(rng, t.size, 4.0 / STEP)
+    pedal = 1 + unsteadiness * smooth_noise(rng, t.size, 4.0 / STEP)
     return _rounded(speed, 1.8) * pedal, _rounded(curvature, 1.6)
 
 
@@ -162,6 +169,11 @@ def _suspension(static: Floats) -> Floats:
     pole = 2 * np.pi * BODY_FREQUENCY * STEP * (-0.4 + 1j * np.sqrt(1 - 0.4**2))
     a = np.real(np.poly([np.exp(pole), np.exp(np.conj(pole))]))
     return sosfilt(np.array([[a.sum(), 0.0, 0.0, *a]]), static)
+
+
+def _swell(size: int, rng: np.random.Generator) -> Floats:
+    """(N,) swinging of a ship, unit variance."""
+    return band_noise(rng, size, (1 / SWELL_PERIOD[1], 1 / SWELL_PERIOD[0]), 1 / STEP)
 
 
 def _body_modes(size: int, rng: np.random.Generator) -> Floats:

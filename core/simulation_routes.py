@@ -6,7 +6,7 @@ called until the drive is long enough. Speeds in m/s, curvature positive to the 
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import pi, radians, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -153,8 +153,33 @@ def _curves(plan: Itinerary) -> None:
         plan.turn(plan.side() * plan.uniform(0.4, 1.8), plan.uniform(10, 40), plan.uniform(1.8, 3.2))
 
 
+def _constant(plan: Itinerary) -> None:
+    """Straight on at one speed, reached without haste."""
+    if not plan.speed:
+        plan.reach(plan.uniform(22, 33), plan.uniform(0.5, 1.0))
+    plan.hold(60.0)
+
+
+def _ferry(plan: Itinerary) -> None:
+    if not plan.speed:
+        plan.reach(plan.uniform(7, 9), 0.05)
+    plan.hold(plan.uniform(30, 120))
+    plan.bend(plan.side() * plan.uniform(0.1, 0.6), plan.uniform(500, 1500))
+
+
+def _crawl(plan: Itinerary) -> None:
+    """Walking pace, stop and go."""
+    plan.reach(plan.uniform(0.8, 1.8), plan.uniform(0.3, 0.8))
+    plan.hold(plan.uniform(3, 15))
+    if plan.chance(0.3):
+        plan.bend(plan.side() * plan.uniform(0.2, 1.5), plan.uniform(6, 15))
+    if plan.chance(0.6):
+        plan.reach(0.0, plan.uniform(0.3, 0.8))
+        plan.hold(plan.uniform(2, 20))
+
+
 class Road(NamedTuple):
-    """Unevenness of a kind of road, smooth in the distance driven; level on average."""
+    """What a kind of way does to the vehicle; slopes are smooth in the distance driven and level on average."""
 
     grade_rms: float
     """rise per run"""
@@ -164,10 +189,18 @@ class Road(NamedTuple):
     """rad"""
     roughness: float = 1.0
     """vibration relative to an ordinary town road"""
+    unsteadiness: float = 0.03
+    """share by which the speed wanders"""
+    lifted: float = 0.0
+    """rad the nose is held up, on a tow truck's lift"""
+    swell: float = 0.0
+    """rad rms of rolling and of pitching on a ship, where the vehicle stands at any angle to the course; 0 = on land"""
 
     def scaled(self, relief: float, vibration: float) -> "Road":
         """Give the road with other slopes and another roughness."""
-        return Road(relief * self.grade_rms, self.grade_limit, relief * self.bank_rms, vibration * self.roughness)
+        return self._replace(
+            grade_rms=relief * self.grade_rms, bank_rms=relief * self.bank_rms, roughness=vibration * self.roughness
+        )
 
 
 @dataclass(frozen=True)
@@ -188,6 +221,16 @@ ROUTES = {
     "parked": Route(_parked, _TOWN),
     "roundabout": Route(_roundabout, _TOWN),
     "curves": Route(_curves, _TOWN),
+    "constant": Route(
+        _constant, Road(grade_rms=0.008, grade_limit=0.04, bank_rms=0.02, roughness=0.6, unsteadiness=0.002)
+    ),
+    "steep": Route(_hills, Road(grade_rms=0.12, grade_limit=0.2, bank_rms=0.03, roughness=1.2)),
+    "crawl": Route(_crawl, _TOWN),
+    "towed": Route(_city, _TOWN._replace(lifted=radians(8.0))),
+    "ferry": Route(
+        _ferry,
+        Road(grade_rms=0.0, grade_limit=0.01, bank_rms=0.0, roughness=0.3, unsteadiness=0.002, swell=radians(1.5)),
+    ),
 }
 
 REVERSE_EVERY = 150.0

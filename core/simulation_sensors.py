@@ -113,6 +113,10 @@ class Receiver(NamedTuple):
     vertical_speed: bool = False
     accuracy: bool = False
 
+    def with_altitude_noise(self, factor: float) -> "Receiver":
+        """Give a receiver whose altitude is so many times worse."""
+        return self._replace(altitude_drift=factor * self.altitude_drift, altitude_noise=factor * self.altitude_noise)
+
 
 def gps_fixes(trajectory: Trajectory, t: Floats, arm: Floats, receiver: Receiver, rng: np.random.Generator) -> Floats:
     """(M, 8) fixes that tell of the motion at the times `t` of an antenna at `arm` on the vehicle."""
