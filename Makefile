@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -64,6 +64,9 @@ test: setup  ## everything
 
 bench: setup
 	for b in benchmarks/*.py; do $(BIN)/python $$b || exit 1; done
+
+bench-accuracy: setup  ## accuracy, honesty and alarms on thousands of drives: writes docs/accuracy.md
+	$(BIN)/python benchmarks/accuracy.py
 
 clean:
 	rm -rf .venv web/node_modules api/static build
