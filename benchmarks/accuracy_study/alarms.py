@@ -14,6 +14,8 @@ from core.simulation_faults import Disturbances
 
 HOURS = 300.0
 SECONDS = 1800.0
+LISTED = 20
+"""alarms told one by one"""
 NIGHT = Scenario(
     "parked", 6 * 3600.0, imu_rate=10.0, gps_rate=1.0, vibration=0.1, disturbances=Disturbances(bias_drift=0.1)
 )
@@ -65,7 +67,7 @@ def follow(item: tuple[str, int]) -> Json:
         confirmed |= bool(of_kind(outcome.events, EventKind.CONFIRMED))
         for kind in (EventKind.ORIENTATION_CHANGED, EventKind.FAULT):
             raised += [[str(event.fault or kind), number, event.t] for event in of_kind(outcome.events, kind)]
-    return {"hours": hours, "raised": raised, "confirmed": confirmed}
+    return {"seed": item[1], "hours": hours, "raised": raised, "confirmed": confirmed}
 
 
 def measure(options: Options) -> Json:
@@ -112,4 +114,18 @@ Drives of half an hour, and chains of drives with the device switched off betwee
 device. A night is six hours parked while the temperature changes the biases. A car lifted by a tow truck after its
 device was confirmed does look like a device that was tilted: shown, and not counted.
 
-{table(["", "hours", "confirmed", "orientation changes", "faults"], rows)}"""
+{table(["", "hours", "confirmed", "orientation changes", "faults"], rows)}
+
+{_found(result)}"""
+
+
+def _found(result: Json) -> str:
+    """Say which drives of `alarms.sessions_of(name, seed)` to look at."""
+    lines = [
+        f"- {name}, seed {run['seed']}: {kind} on drive {number + 1} after {t:.0f} s"
+        for name, runs in result.items()
+        for run in runs
+        for kind, number, t in run["raised"]
+    ]
+    more = [f"- and {len(lines) - LISTED} more"] if len(lines) > LISTED else []
+    return "\n".join(["What was raised:", "", *lines[:LISTED], *more]) if lines else "Nothing was raised."

@@ -173,14 +173,22 @@ def text(result: Json) -> str:
     """Table."""
     rows = [_row(kind, drives) for kind, drives in result.items()]
     count = sum(len(drives) for drives in result.values())
+    columns = [
+        "",
+        "drives",
+        "confirmed",
+        f"more than {WRONG:.0f}° off",
+        "worst, °",
+        "drive",
+        "drives with a fault reported",
+    ]
     return f"""## Hard drives
 
-{count} drives of 300 to 600 s, accelerometer at 50 to 100 Hz, GPS at 1 to 4 Hz,
-any road, sensor and mounting, each kind with one thing wrong. A left-handed sensor has no right mounting: anything
-confirmed with it counts as 180° off. A towed car is itself tilted by 8°, which no sensor fixed to it can tell from a
-mounting: it is shown, and not counted.
+{count} drives of 300 to 600 s, accelerometer at 50 to 100 Hz, GPS at 1 to 4 Hz, any road, sensor and mounting, each
+kind with one thing wrong. A left-handed sensor has no right mounting: anything confirmed with it counts as 180° off. A
+towed car is itself tilted by 8°, which no sensor fixed to it can tell from a mounting: it is shown, and not counted. Drive k of a kind is `hard.scenario_of(kind, k)`.
 
-{table(["", "drives", "confirmed", f"more than {WRONG:.0f}° off", "worst, °", "drives with a fault reported"], rows)}"""
+{table(columns, rows)}"""
 
 
 def _row(kind: str, drives: list[Json]) -> list[str]:
@@ -191,4 +199,5 @@ def _row(kind: str, drives: list[Json]) -> list[str]:
     told = f"{len(reported)} ({', '.join(names)})" if reported else "0"
     worst = number(float(known.max())) if known.size else "–"
     expected = ", wanted" if KINDS[kind].sensor_fault else ""
-    return [kind, str(len(drives)), str(known.size), str(wrong(kind, drives)), worst, told + expected]
+    which = str(int(np.nanargmax(off))) if known.size else "–"
+    return [kind, str(len(drives)), str(known.size), str(wrong(kind, drives)), worst, which, told + expected]

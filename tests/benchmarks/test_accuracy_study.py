@@ -149,3 +149,22 @@ def test_a_confirmation_outside_its_region_is_counted() -> None:
     honest = {"error": [2.0, 2.0, 2.0], "sigma": [1.0, 1.0, 1.0]}
     assert confirming.in_region([bold, honest]) == 0.5
     assert confirming.in_axes([bold, honest]) == pytest.approx(5 / 6)
+
+
+def test_alarms_are_counted_and_say_where_to_look() -> None:
+    quiet = {"seed": 1, "hours": 1.0, "raised": [], "confirmed": True}
+    loud = quiet | {"seed": 2, "raised": [["orientation_changed", 0, 99.0], ["stuck_axis", 1, 5.0]]}
+    result = {"city, mems": [quiet, loud], "town, then towed": [loud]}
+    assert [target.measured for target in alarms.targets(result)] == ["1 in 2 h", "1 in 2 h"]
+    told = alarms.text(result)
+    assert "| city, mems | 2.0 | 2 of 2 | 1 | 1 |" in told
+    assert "- city, mems, seed 2: stuck_axis on drive 2 after 5 s" in told
+
+
+def test_every_row_of_a_table_has_all_its_columns() -> None:
+    good = {"confirmed": [{"t": 1.0, "error": [0.1, 0.1, 0.1], "sigma": [1, 1, 1]}], "faults": ["saturated"]}
+    turned = {"before": True, "false": 0, "delay": 9.0, "angle_error": 1.0, "anew": None, "anew_after": None}
+    drives = [[["any axis", True, [6.0, 10.0], 0], turned]]
+    told = [hard.text({"saturated": [good]}), remounts.text({"drives": drives}), confirming.text(fake_cells())]
+    for text in told:
+        assert len({line.count(" | ") for line in text.splitlines() if line.startswith("|")}) == 1
