@@ -186,7 +186,8 @@ def text(result: Json) -> str:
 
 {count} drives of 300 to 600 s, accelerometer at 50 to 100 Hz, GPS at 1 to 4 Hz, any road, sensor and mounting, each
 kind with one thing wrong. A left-handed sensor has no right mounting: anything confirmed with it counts as 180° off. A
-towed car is itself tilted by 8°, which no sensor fixed to it can tell from a mounting: it is shown, and not counted. Drive k of a kind is `hard.scenario_of(kind, k)`.
+towed car is itself tilted by 8°, which no sensor fixed to it can tell from a mounting: it is shown, and not counted.
+Drive k of a kind is `hard.scenario_of(kind, k)`.
 
 {table(columns, rows)}"""
 
