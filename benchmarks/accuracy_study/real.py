@@ -1,6 +1,7 @@
 """Recorded drives of other people, which are not part of the project: figures only."""
 
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -113,6 +114,8 @@ def _final(outcome: Outcome) -> Json | None:
 def measure(options: Options) -> Json:
     """Run every recorded drive there is."""
     paths = sorted(options.data.glob("*.csv.gz"))
+    if not paths:
+        print(f"real: skipped, no recorded drives in {options.data}", file=sys.stderr, flush=True)
     names = [path.name.removesuffix(".csv.gz") for path in paths]
     drives = dict(zip(names, parallel.run("real", follow, paths), strict=True)) if paths else {}
     place = dict(zip(names, paths, strict=True))
