@@ -10,6 +10,8 @@ from storage.database import ReadSession, WriteSession
 from storage.models import alert_unresolved, alerts, devices
 
 OPEN, ACKNOWLEDGED, RESOLVED = "open", "acknowledged", "resolved"
+SEVERITIES = ("info", "warning", "critical")
+"""Mildest first."""
 
 
 class Alert(NamedTuple):
@@ -97,10 +99,14 @@ def page(tx: ReadSession, limit: int, before: int | None, wanted: Filter) -> lis
 
 
 def raise_(tx: WriteSession, device_pk: int, finding: Finding, now: datetime) -> int:
-    """Open an alert, or count it once more when one of this kind is open; give its number."""
+    """Open an alert, or count it once more when one of this kind is open; give its number.
+
+    An open alert tells the latest finding, unless that is a milder one.
+    """
     for alert in find_open(tx, device_pk, [finding.kind]):
-        values = finding._asdict() | {"occurrences": alert.occurrences + 1, "updated_at": now}
-        tx.execute(_change, of_pk=alert.pk, **values)
+        milder = SEVERITIES.index(finding.severity) < SEVERITIES.index(alert.severity)
+        told = {} if milder else finding._asdict()
+        tx.execute(_change, of_pk=alert.pk, occurrences=alert.occurrences + 1, updated_at=now, **told)
         return alert.pk
     opened = {"state": OPEN, "opened_at": now, "updated_at": now, "occurrences": 1}
     return int(tx.execute(_add, device_pk=device_pk, **opened, **finding._asdict()).scalar_one())

@@ -1,71 +1,30 @@
-"""Alerts: which event of the estimator opens one, and when it is over.
+"""Alerts: opened by what the estimator finds, and when they are over.
 
-`orientation_changed` and `sensor_fault` end by themselves when a mounting is confirmed, not before: that is the
-hysteresis, a single good moment does not clear them. A deliberate refit (restart) ends them too.
+They end by themselves when a mounting is confirmed, not before: that is the hysteresis, a single good moment does not
+clear them. A deliberate refit (restart) ends them too.
 """
 
 from collections.abc import Callable
 from datetime import datetime
-from typing import Any, NamedTuple
-
-import numpy as np
 
 import core
 from api import schemas
-from api.services import presenting, publishing
+from api.services import findings, presenting, publishing
 from api.services.context import Context
 from api.services.errors import NotFoundError
 from storage import alerts, installations
 from storage.database import ReadSession, WriteSession
 
-ENDED_BY_CONFIRMATION = ("orientation_changed", "sensor_fault")
+ENDED_BY_CONFIRMATION = sorted({kind for kind, _ in findings.ALERTS.values()})
 SERVICE = "service"
 """Who resolved an alert that nobody resolved by hand."""
 
 
-class Where(NamedTuple):
-    """What an event is about."""
-
-    session: str
-    mount: int | None
-    """number of the mounting in doubt"""
-
-
-def orientation_changed(event: core.Event, where: Where) -> alerts.Finding:
-    """The device sits otherwise than when its mounting was confirmed."""
-    angle = None if event.angle is None else round(float(np.degrees(event.angle)), 2)
-    size = "" if angle is None else f" by {angle:.1f} degrees"
-    message = f"The device has moved{size} since its mounting was confirmed."
-    return alerts.Finding("orientation_changed", "warning", message, {"angle_deg": angle} | _data(event, where))
-
-
-def sensor_fault(event: core.Event, where: Where) -> alerts.Finding:
-    """The readings contradict what a sensor can measure."""
-    reason = event.reason or "The sensor's readings cannot be right."
-    return alerts.Finding("sensor_fault", "warning", reason, {"reason": reason} | _data(event, where))
-
-
-FINDINGS: dict[core.EventKind, Callable[[core.Event, Where], alerts.Finding]] = {
-    core.EventKind.ORIENTATION_CHANGED: orientation_changed,
-    core.EventKind.FAULT: sensor_fault,
-}
-
-
-def _data(event: core.Event, where: Where) -> dict[str, Any]:
-    return {
-        "session": where.session,
-        "t": event.t,
-        "mount": where.mount,
-        "quaternion": None if event.quaternion is None else event.quaternion.tolist(),
-        "sigma_deg": None if event.sigma is None else presenting.degrees(event.sigma),
-    }
-
-
-def raise_for(tx: WriteSession, device_pk: int, event: core.Event, where: Where, now: datetime) -> None:
+def raise_for(tx: WriteSession, device_pk: int, event: core.Event, where: findings.Where, now: datetime) -> None:
     """Open the alert an event calls for, or count it once more."""
-    finding = FINDINGS.get(event.kind)
+    finding = findings.finding(event, where)
     if finding is not None:
-        publishing.alert_changed(tx, alerts.raise_(tx, device_pk, finding(event, where), now), now)
+        publishing.alert_changed(tx, alerts.raise_(tx, device_pk, finding, now), now)
 
 
 def end(tx: WriteSession, device_pk: int, note: str, now: datetime) -> None:

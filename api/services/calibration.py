@@ -8,7 +8,7 @@ import numpy as np
 import core
 from api import schemas
 from api.formats.log import Reading
-from api.services import alerting, history, presenting, publishing
+from api.services import alerting, findings, history, presenting, publishing
 from api.services.context import Context
 from api.services.errors import NotFoundError, UnusableError
 from storage import installations, mounts
@@ -116,7 +116,7 @@ class Calibration:
         if event.kind == core.EventKind.ORIENTATION_CHANGED:
             mounts.suspect(self.tx, device_pk)
         current = mounts.current(self.tx, device_pk)
-        where = alerting.Where(session.name, None if current is None else current.n)
+        where = findings.Where(session.name, session.started_at, None if current is None else current.n)
         alerting.raise_for(self.tx, device_pk, event, where, self.now)
 
     def _confirm(self, session: Session, event: core.Event) -> None:

@@ -64,6 +64,11 @@ def verification(test: core.Verification) -> dict[str, Any]:
     }
 
 
+def evidence(seen: core.Evidence) -> dict[str, Any]:
+    """Give what a sequential test decided on: columns of equal length, and the value that decides."""
+    return {"t": seen.t.tolist(), "value": seen.value.tolist(), "threshold": float(seen.threshold)}
+
+
 def degrees(radians: Any) -> list[float]:
     """Give a vector in degrees."""
     values: list[float] = np.degrees(radians).tolist()

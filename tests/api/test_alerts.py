@@ -1,14 +1,22 @@
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
+import numpy as np
 import pytest
 import sqlalchemy as sa
 
+import core
+from api.services import alerting, findings
+from api.services.findings import Where
+from api.services.words import degrees_text
 from storage import alerts
 from storage import models as tables
 from storage.database import Database
 from tests.conftest import Clock
 from tests.drives import CHUNK_SECONDS, REMOUNTED_AT, remounted
 from tests.service import Api, Device
+
+NOW = datetime(2024, 5, 6, 7, 8, 9, tzinfo=UTC)
 
 
 @pytest.fixture
@@ -29,6 +37,7 @@ def test_a_moved_device_opens_one_alert(moved: Device, api: Api, clock: Clock) -
     assert data["angle_deg"] == pytest.approx(60, abs=120)
     assert (data["session"], data["mount"]) == ("a", 1)
     assert REMOUNTED_AT < data["t"] < len(until_moved()) * CHUNK_SECONDS
+    assert_says_how_it_moved(data, alert["message"])
     assert alert == {
         "id": alert["id"],
         "device_id": "box-1",
@@ -38,7 +47,7 @@ def test_a_moved_device_opens_one_alert(moved: Device, api: Api, clock: Clock) -
         "opened_at": "2024-05-06T07:08:09Z",
         "updated_at": "2024-05-06T07:08:09Z",
         "count": 1,
-        "message": f"The device has moved by {data['angle_deg']:.1f} degrees since its mounting was confirmed.",
+        "message": alert["message"],
         "acknowledged_at": None,
         "acknowledged_by": None,
         "acknowledge_note": None,
@@ -48,6 +57,30 @@ def test_a_moved_device_opens_one_alert(moved: Device, api: Api, clock: Clock) -
     }
     assert api.get("/devices", params={"has_open_alert": True})["items"][0]["open_alerts"] == 1
     assert api.get("/fleet/summary")["alerts"] == {"orientation_changed": {"warning": 1}}
+
+
+def assert_says_how_it_moved(data: dict[str, Any], message: str) -> None:
+    """Check axis, beginning and evidence where the estimator gives them."""
+    assert set(data) == {
+        *("session", "t", "at", "since_t", "since", "mount", "quaternion", "sigma_deg"),
+        *("angle_deg", "axis", "evidence", "fault", "reason"),
+    }
+    began = datetime.fromisoformat(data["at"]) - timedelta(seconds=data["t"])
+    assert message.startswith("The device ")
+    assert message.endswith(": the confirmed mounting no longer holds.")
+    assert degrees_text(data["angle_deg"]) in message
+    if data["axis"] is not None:
+        assert np.linalg.norm(data["axis"]) == pytest.approx(1)
+        assert "moved" not in message
+    if data["since_t"] is not None:
+        assert data["since_t"] <= data["t"]
+        since = datetime.fromisoformat(data["since"])
+        assert (since - began).total_seconds() == pytest.approx(data["since_t"], abs=0.01)
+        assert f"{since:%H:%M} UTC" in message
+    if data["evidence"] is not None:
+        seen = data["evidence"]
+        assert len(seen["t"]) == len(seen["value"])
+        assert seen["value"][-1] >= seen["threshold"] > 0
 
 
 def test_a_newly_confirmed_mounting_resolves_it(moved: Device, api: Api, clock: Clock) -> None:
@@ -115,6 +148,33 @@ def test_alerts_are_listed_newest_first_and_filtered(api: Api, clock: Clock) -> 
 
 def devices(page: dict[str, list[dict[str, Any]]]) -> list[str]:
     return [alert["device_id"] for alert in page["items"]]
+
+
+def test_a_milder_finding_does_not_hide_a_graver_one(moved: Device, api: Api, database: Database) -> None:
+    found = [("critical", "left-handed", 1), ("warning", "saturated", 2), ("critical", "stuck", 3)]
+    for severity, message, count in found:
+        with database.write() as tx:
+            pk = tx.value(sa.select(tables.devices.c.pk))
+            alerts.raise_(tx, pk, alerts.Finding("sensor_fault", severity, message, {"n": count}), NOW)
+        (alert,) = api.get("/alerts?kind=sensor_fault")["items"]
+        assert alert["count"] == count
+        assert (alert["severity"], alert["message"]) == ("critical", "stuck" if count == 3 else "left-handed")
+        assert alert["data"] == {"n": 3 if count == 3 else 1}
+
+
+@pytest.mark.parametrize("fault", core.Fault)
+def test_a_fault_lasts_until_a_restart(moved: Device, api: Api, database: Database, fault: core.Fault) -> None:
+    event = core.Event(500.0, core.EventKind.FAULT, None, None, None, None, "what is wrong", None, 490.0, None, fault)
+    with database.write() as tx:
+        pk = tx.value(sa.select(tables.devices.c.pk))
+        alerting.raise_for(tx, pk, event, Where("a", NOW, None), NOW)
+    kind = findings.ALERTS[fault][0]
+    (alert,) = api.get(f"/alerts?kind={kind}")["items"]
+    assert (alert["state"], alert["data"]["fault"]) == ("open", fault.value)
+    assert alert["data"]["since"] == "2024-05-06T07:16:19.000Z"
+    api.post(f"/devices/{moved.id}/installation/restart")
+    (alert,) = api.get(f"/alerts?kind={kind}")["items"]
+    assert (alert["state"], alert["resolve_note"]) == ("resolved", "The calibration was restarted.")
 
 
 def test_a_recurrence_raises_the_count(moved: Device, api: Api, database: Database, clock: Clock) -> None:
