@@ -21,7 +21,7 @@ from core import PRESETS, Event, Outcome, Parameters, Samples, Status
 PIECE = 60.0
 """s of log time given to the estimator at once"""
 
-HEADS = ("file", "min", "samples", "fixes", "stage", *(f"{angle} °" for angle in ANGLES), "needs")
+HEADS = ("file", "min", "samples", "fixes", "stage", *(f"{angle} °" for angle in ANGLES), "needs", "faults")
 
 
 class Result(NamedTuple):
@@ -34,6 +34,8 @@ class Result(NamedTuple):
     fixes: int
     rejected: Counter[str]
     status: Status
+    faults: tuple[str, ...]
+    """names, in the order in which they were found"""
 
 
 def run(logs: list[Path], log_format: Format | None, preset: str, every: float, course: Sense, as_json: bool) -> None:
@@ -66,7 +68,7 @@ def run(logs: list[Path], log_format: Format | None, preset: str, every: float, 
         if as_json:
             typer.echo(json.dumps(_summary(results[-1]), allow_nan=False))
     if results and not as_json:
-        output.print_table(HEADS, map(_row, results), folded=("file", "needs"))
+        output.print_table(HEADS, map(_row, results), folded=("file", "needs", "faults"))
         _print_rejected(results)
     if len(results) < len(logs):
         raise typer.Exit(output.UNREADABLE)
@@ -92,6 +94,7 @@ def _replay(path: Path, reading: Reading, params: Parameters, show: Callable[[Ou
     """Run the estimator over one log in pieces, a progress bar on the terminal."""
     state = core.begin_session(params, core.initial_state(params))
     status, used, fixes, rejected = core.status(params, state), 0, 0, Counter(reading.rejected)
+    faults: list[str] = []
     samples = reading.samples
     duration = float(samples.t[-1] - samples.t[0])
     with output.progress() as bar:
@@ -101,8 +104,9 @@ def _replay(path: Path, reading: Reading, params: Parameters, show: Callable[[Ou
             show(outcome)
             status, used, fixes = outcome.status, used + outcome.samples, fixes + outcome.fixes
             rejected.update(outcome.rejected)
+            faults += [event.fault for event in outcome.events if event.fault]
             bar.update(task, completed=float(piece.t[-1] - samples.t[0]))
-    return Result(path, duration, used, fixes, rejected, status)
+    return Result(path, duration, used, fixes, rejected, status, tuple(dict.fromkeys(faults)))
 
 
 def _pieces(samples: Samples) -> Iterator[Samples]:
@@ -139,18 +143,20 @@ def _estimates(outcome: Outcome) -> Iterator[dict[str, Any]]:
 
 
 def _event(event: Event) -> dict[str, Any]:
-    line: dict[str, Any] = {"type": "event", "t": event.t, "event": str(event.kind)}
-    if event.quaternion is not None:
-        line["quaternion"] = event.quaternion.tolist()
-    if event.sigma is not None:
-        line["sigma_deg"] = presenting.degrees(event.sigma)
-    if event.angle is not None:
-        line["angle_deg"] = float(np.degrees(event.angle))
-    if event.verification is not None:
-        line["verification"] = presenting.verification(event.verification)
-    if event.reason is not None:
-        line["reason"] = event.reason
-    return line
+    """Give an event, of which only what it is about."""
+    known = {
+        "quaternion": None if event.quaternion is None else event.quaternion.tolist(),
+        "sigma_deg": None if event.sigma is None else presenting.degrees(event.sigma),
+        "angle_deg": None if event.angle is None else float(np.degrees(event.angle)),
+        "axis": None if event.axis is None else event.axis.tolist(),
+        "since": event.since,
+        "fault": event.fault,
+        "reason": event.reason,
+        "evidence": None if event.evidence is None else presenting.evidence(event.evidence),
+        "verification": None if event.verification is None else presenting.verification(event.verification),
+    }
+    told = {name: value for name, value in known.items() if value is not None}
+    return {"type": "event", "t": event.t, "event": event.kind} | told
 
 
 def _summary(result: Result) -> dict[str, Any]:
@@ -196,6 +202,7 @@ def _row(result: Result) -> list[str]:
         status.stage.word,
         *_angles(status),
         ", ".join(status.needs.words),
+        ", ".join(result.faults),
     ]
 
 

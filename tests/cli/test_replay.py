@@ -1,6 +1,7 @@
 import gzip
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -8,8 +9,9 @@ import pytest
 import zstandard
 from typer.testing import CliRunner, Result
 
+import core
 from api.cli import app
-from core import quaternion
+from core import Event, EventKind, Evidence, Fault, Outcome, State, quaternion
 from tests.cli import livella
 from tests.cli.conftest import Log
 
@@ -127,6 +129,64 @@ def thesis_log(csv: str) -> str:
     return "\n".join(out)
 
 
+def event(kind: EventKind, **known: Any) -> Event:
+    nothing = dict.fromkeys(("quaternion", "sigma", "verification", "angle", "reason"))
+    return Event(t=98.2, kind=kind, **(nothing | known))
+
+
+FAULTY = event(EventKind.FAULT, fault=Fault.LEFT_HANDED, reason="the axes are a mirror image", since=61.0)
+MOVED = event(
+    EventKind.ORIENTATION_CHANGED,
+    quaternion=np.array([1.0, 0.0, 0.0, 0.0]),
+    sigma=np.radians([1.0, 1.0, 2.0]),
+    angle=np.radians(14.0),
+    axis=np.array([0.0, 0.0, 1.0]),
+    since=61.0,
+    evidence=Evidence(np.array([60.0, 65.0]), np.array([20.0, 61.0]), 60.0),
+)
+
+
+@pytest.fixture
+def eventful(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An estimator that finds the same events in every piece of a log."""
+
+    def advance(*given: Any) -> tuple[State, Outcome]:
+        state, outcome = core.advance(*given)
+        return state, outcome._replace(events=(FAULTY, MOVED))
+
+    monkeypatch.setattr("api.commands.replay.core", SimpleNamespace(**vars(core) | {"advance": advance}))
+
+
+@pytest.mark.usefixtures("eventful")
+def test_event_lines_tell_what_is_known_and_nothing_else(tmp_path: Path) -> None:
+    done = replay(one_sample(tmp_path), "--json")
+    fault, moved = of("event", [json.loads(line) for line in done.stdout.splitlines()])
+    assert fault == {
+        "type": "event",
+        "t": 98.2,
+        "event": "fault",
+        "since": 61.0,
+        "fault": "left_handed",
+        "reason": "the axes are a mirror image",
+    }
+    assert moved.pop("sigma_deg") == pytest.approx([1, 1, 2])
+    assert moved == {
+        "type": "event",
+        "t": 98.2,
+        "event": "orientation_changed",
+        "quaternion": [1, 0, 0, 0],
+        "angle_deg": pytest.approx(14),
+        "axis": [0, 0, 1],
+        "since": 61.0,
+        "evidence": {"t": [60, 65], "value": [20, 61], "threshold": 60.0},
+    }
+
+
+@pytest.mark.usefixtures("eventful")
+def test_the_table_names_each_fault_once(drive: Log) -> None:
+    assert replay(drive.path).stdout.count("left_handed") == 1
+
+
 def test_a_file_that_cannot_be_read_and_one_that_can(tmp_path: Path, drive: Log) -> None:
     bad = tmp_path / "bad.csv"
     bad.write_text("t,ax,ay,az,fix,speed,course\n0,0,0,9.8,1,3,90\n0.1,0,oops,9.8,,,\n")
@@ -162,9 +222,14 @@ def test_a_directory_is_no_log(tmp_path: Path) -> None:
     assert "Is a directory" in done.stderr
 
 
-def test_a_log_of_one_sample(tmp_path: Path) -> None:
-    path = tmp_path / "one.csv"
+def one_sample(directory: Path) -> Path:
+    path = directory / "one.csv"
     path.write_text("t,ax,ay,az,fix,speed,course\n5,0,0,9.8,1,3,90\n")
+    return path
+
+
+def test_a_log_of_one_sample(tmp_path: Path) -> None:
+    path = one_sample(tmp_path)
     done = replay(path, "--json")
     summary = json.loads(done.stdout.splitlines()[-1])
     assert (done.exit_code, summary["mount"], summary["estimate"], summary["samples"]) == (0, None, None, 1)
