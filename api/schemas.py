@@ -124,6 +124,13 @@ class Mount(Document):
     verification: Verification
 
 
+class Limits(Document):
+    """What an estimate's 1 sigma must be below before a mounting is confirmed, degrees."""
+
+    yaw_sigma_deg: float = Field(description="About the vehicle's z axis.")
+    tilt_sigma_deg: float = Field(description="About the vehicle's x and y axes.")
+
+
 class Installation(Document):
     """Where an installation stands."""
 
@@ -136,6 +143,7 @@ class Installation(Document):
     estimate: Estimate | None
     verification: Verification
     mount: Mount | None = Field(description="The mounting in force, or the suspect one.")
+    limits: Limits
     open_alerts: int
     last_data_at: datetime | None = Field(description="When the last data came in.")
     revision: int = Field(description="Rises with every change.")
@@ -242,7 +250,7 @@ class Alert(Document):
     updated_at: datetime
     count: int = Field(description="How often the condition was seen while the alert was open.")
     message: str
-    data: dict[str, Any]
+    data: dict[str, Any] = Field(description="What was found, in numbers; null is what is not known.")
     acknowledged_at: datetime | None
     acknowledged_by: str | None
     acknowledge_note: str | None

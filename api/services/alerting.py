@@ -65,7 +65,7 @@ def _settle(
         if row is not None and _found(tx, pk).state in from_states:
             change(tx, pk, by, note, now)
             publishing.alert_changed(tx, pk, now)
-            publishing.installation_touched(tx, row, device_id, now)
+            publishing.installation_touched(tx, row, device_id, context.params, now)
         shown = presenting.alert(_found(tx, pk))
     context.wake()
     return shown

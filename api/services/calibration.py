@@ -149,7 +149,7 @@ class Calibration:
     def shown(self) -> schemas.Installation:
         """Give the installation resource."""
         if self._shown is None:
-            self._shown = publishing.show(self.tx, self.row, self.device_id)
+            self._shown = publishing.show(self.tx, self.row, self.device_id, self.context.params)
         return self._shown
 
 

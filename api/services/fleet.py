@@ -97,7 +97,7 @@ def read_installation(context: Context, device_id: str) -> schemas.Installation:
         row = installations.find(tx, device_id)
         if row is None:
             raise NotFoundError(UNKNOWN_DEVICE)
-        return publishing.show(tx, row, device_id)
+        return publishing.show(tx, row, device_id, context.params)
 
 
 def restart(context: Context, device_id: str) -> schemas.Installation:

@@ -90,6 +90,7 @@ def installation(
     device_id: str,
     beside: installations.Beside,
     mount_row: mounts.Mount | None,
+    params: core.Parameters,
 ) -> schemas.Installation:
     """Give the installation resource."""
     shown = row.status
@@ -107,11 +108,18 @@ def installation(
             "estimate": None if now is None else now | rotation(now["quaternion"]),
             "verification": shown["verification"],
             "mount": None if mount_row is None else mount(mount_row),
+            "limits": limits(params),
             "open_alerts": beside.open_alerts,
             "last_data_at": row.last_data_at,
             "revision": row.revision,
         }
     )
+
+
+def limits(params: core.Parameters) -> dict[str, float]:
+    """Give what an estimate's sigma must be below, in degrees."""
+    yaw, tilt = degrees([params.settling.yaw_sigma, params.settling.tilt_sigma])
+    return {"yaw_sigma_deg": round(yaw, 6), "tilt_sigma_deg": round(tilt, 6)}
 
 
 def mount(row: mounts.Mount) -> schemas.Mount:

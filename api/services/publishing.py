@@ -3,15 +3,19 @@
 from datetime import datetime
 from typing import Literal
 
+import core
 from api import schemas
 from api.services import presenting
 from storage import alerts, devices, events, installations, mounts
 from storage.database import ReadSession, WriteSession
 
 
-def show(tx: ReadSession, row: installations.Installation, device_id: str) -> schemas.Installation:
+def show(
+    tx: ReadSession, row: installations.Installation, device_id: str, params: core.Parameters
+) -> schemas.Installation:
     """Give the installation resource of a row."""
-    return presenting.installation(row, device_id, installations.beside(tx, row), mounts.current(tx, row.device_pk))
+    beside, mount = installations.beside(tx, row), mounts.current(tx, row.device_pk)
+    return presenting.installation(row, device_id, beside, mount, params)
 
 
 def installation_changed(tx: WriteSession, shown: schemas.Installation, now: datetime) -> None:
@@ -19,10 +23,12 @@ def installation_changed(tx: WriteSession, shown: schemas.Installation, now: dat
     events.add(tx, shown.device_id, "installation", shown.model_dump_json(), now)
 
 
-def installation_touched(tx: WriteSession, row: installations.Installation, device_id: str, now: datetime) -> None:
+def installation_touched(
+    tx: WriteSession, row: installations.Installation, device_id: str, params: core.Parameters, now: datetime
+) -> None:
     """Something shown with the installation has changed: raise its revision and tell."""
     installations.touch(tx, row.device_pk)
-    installation_changed(tx, show(tx, row._replace(revision=row.revision + 1), device_id), now)
+    installation_changed(tx, show(tx, row._replace(revision=row.revision + 1), device_id, params), now)
 
 
 def alert_changed(tx: WriteSession, pk: int, now: datetime) -> None:

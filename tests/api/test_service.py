@@ -194,6 +194,6 @@ def test_the_description_names_every_error_and_every_answer(client: TestClient) 
                 assert media.get("schema") or media.get("itemSchema"), operation["operationId"]
     assert "HTTPValidationError" not in document["components"]["schemas"]
     assert set(document["components"]["schemas"]["Installation"]["required"]) == {
-        *("device_id", "stage", "since", "progress", "needs", "hint", "estimate", "verification", "mount"),
+        *("device_id", "stage", "since", "progress", "needs", "hint", "estimate", "verification", "mount", "limits"),
         *("open_alerts", "last_data_at", "revision"),
     }

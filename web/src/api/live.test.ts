@@ -14,6 +14,7 @@ const installation = (over: Partial<Installation> = {}): Installation => ({
   estimate: null,
   verification: { state: "idle", elapsed_s: 0, duration_s: 40, error_mps: null, limit_mps: 2.5 },
   mount: null,
+  limits: { yaw_sigma_deg: 1.8, tilt_sigma_deg: 1.4 },
   open_alerts: 0,
   last_data_at: "2025-11-22T10:01:00Z",
   revision: 7,

@@ -436,7 +436,10 @@ export interface components {
             count: number;
             /** Message */
             message: string;
-            /** Data */
+            /**
+             * Data
+             * @description What was found, in numbers; null is what is not known.
+             */
             data: {
                 [key: string]: unknown;
             };
@@ -764,6 +767,7 @@ export interface components {
             verification: components["schemas"]["Verification"];
             /** @description The mounting in force, or the suspect one. */
             mount: components["schemas"]["Mount"] | null;
+            limits: components["schemas"]["Limits"];
             /** Open Alerts */
             open_alerts: number;
             /**
@@ -776,6 +780,22 @@ export interface components {
              * @description Rises with every change.
              */
             revision: number;
+        };
+        /**
+         * Limits
+         * @description What an estimate's 1 sigma must be below before a mounting is confirmed, degrees.
+         */
+        Limits: {
+            /**
+             * Yaw Sigma Deg
+             * @description About the vehicle's z axis.
+             */
+            yaw_sigma_deg: number;
+            /**
+             * Tilt Sigma Deg
+             * @description About the vehicle's x and y axes.
+             */
+            tilt_sigma_deg: number;
         };
         /**
          * Mount

@@ -53,7 +53,7 @@ function Content({ name, device, installation }: ContentProps) {
           <MountingSection shown={shown} />
           <div className={css.side}>
             <VerificationSection verification={installation.verification} stage={installation.stage} />
-            <UncertaintySection shown={shown} />
+            <UncertaintySection shown={shown} limits={installation.limits} />
             <MountsSection id={id} />
           </div>
         </div>

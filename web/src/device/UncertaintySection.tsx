@@ -1,9 +1,10 @@
 import { Check } from "lucide-react";
 import type { CSSProperties } from "react";
+import type { Installation } from "../api/types";
 import { Section } from "../components/Section";
 import css from "./device.module.css";
 import type { Shown } from "./shown";
-import { SIGMA_LIMIT, sigmaShare } from "./sigma";
+import { sigmaLimits, sigmaShare } from "./sigma";
 
 const AXES = [
   { word: "Roll", about: "about the forward axis" },
@@ -11,8 +12,14 @@ const AXES = [
   { word: "Yaw", about: "about the vertical axis" },
 ] as const;
 
+interface UncertaintyProps {
+  shown: Shown | null;
+  limits: Installation["limits"];
+}
+
 /** One sigma of each rotation, against the limit it must be below. */
-export function UncertaintySection({ shown }: { shown: Shown | null }) {
+export function UncertaintySection({ shown, limits }: UncertaintyProps) {
+  const marks = sigmaLimits(limits);
   return (
     <Section title="How sure">
       {shown ? (
@@ -22,7 +29,7 @@ export function UncertaintySection({ shown }: { shown: Shown | null }) {
               key={axis.word}
               {...axis}
               sigma={shown.sigma[i] ?? Number.NaN}
-              limit={SIGMA_LIMIT[i] ?? Number.NaN}
+              limit={marks[i] ?? Number.NaN}
             />
           ))}
           <p className={css.note}>One standard deviation. The marks are what the drive test needs.</p>

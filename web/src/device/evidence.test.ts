@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import { labelled, shortened } from "./evidence";
-import { SIGMA_LIMIT, sigmaShare } from "./sigma";
+import { sigmaLimits, sigmaShare } from "./sigma";
 
 it.each([
   ["angle_deg", { label: "angle", unit: "°" }],
@@ -18,7 +18,9 @@ it.each([
 ])("%o is shortened", (value, expected) => expect(shortened(value)).toBe(expected));
 
 it("keeps every bar and every mark on its scale, in order", () => {
-  const shares = [0.01, 0.5, ...SIGMA_LIMIT.toSorted((a, b) => a - b), 5, 90].map(sigmaShare);
+  const limits = sigmaLimits({ yaw_sigma_deg: 1.8, tilt_sigma_deg: 1.4 });
+  expect(limits).toEqual([1.4, 1.4, 1.8]);
+  const shares = [0.01, 0.5, ...limits, 5, 90].map(sigmaShare);
   expect(shares).toEqual(shares.toSorted((a, b) => a - b));
   expect(Math.min(...shares)).toBeGreaterThan(0);
   expect(Math.max(...shares)).toBe(1);

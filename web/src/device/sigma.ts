@@ -1,7 +1,11 @@
 /** How sure the angles are, on a scale for bars. */
 
-/** Degrees, 1 sigma about vehicle x, y, z: a mounting is RELIABLE below these (`core.DEFAULT.settling`). */
-export const SIGMA_LIMIT = [1.4, 1.4, 1.8] as const;
+import type { Installation } from "../api/types";
+
+/** Degrees, 1 sigma about vehicle x, y, z: the drive test begins below these. */
+export function sigmaLimits({ tilt_sigma_deg, yaw_sigma_deg }: Installation["limits"]) {
+  return [tilt_sigma_deg, tilt_sigma_deg, yaw_sigma_deg] as const;
+}
 
 /** Degrees; what the two ends of a bar stand for. */
 const LEAST = 0.2;
