@@ -9,6 +9,7 @@ import { Notice } from "../components/Tone";
 import type { Tone } from "../lib/stages";
 import css from "./device.module.css";
 import { Evidence } from "./Evidence";
+import { beginning } from "./evidence";
 
 const LOOK: Record<Alert["severity"], { tone: Tone; icon: typeof Info }> = {
   info: { tone: "accent", icon: Info },
@@ -58,14 +59,21 @@ function Alerts({ id }: { id: string }) {
 
 function AlertNotice({ alert }: { alert: Alert }) {
   const { tone, icon } = LOOK[alert.severity];
+  const since = beginning(alert.data);
   const resolved = alert.state === "resolved";
   return (
     <Notice tone={resolved ? "neutral" : tone} icon={icon} title={alert.message}>
       <p className={css.quiet}>
         {STATE[alert.state]} · <ClockTime at={alert.opened_at} />
+        {since && (
+          <>
+            {" "}
+            · began <ClockTime at={since} />
+          </>
+        )}
         {alert.count > 1 && ` · seen ${alert.count} times`}
       </p>
-      <Evidence data={alert.data} />
+      <Evidence data={alert.data} unfolded={!resolved} />
     </Notice>
   );
 }

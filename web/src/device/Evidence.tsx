@@ -1,26 +1,25 @@
+import { useMemo, useState } from "react";
 import css from "./device.module.css";
-import { labelled, shortened } from "./evidence";
+import { EvidenceChart } from "./EvidenceChart";
+import { type AlertData, evidenceRows, evidenceSeries } from "./evidence";
 
-/** The numbers behind an alert, folded away. */
-export function Evidence({ data }: { data: Readonly<Record<string, unknown>> }) {
-  const rows = Object.entries(data).filter(([, value]) => value !== null);
+/** What is behind an alert: the chart a test decided on, and the numbers, folded away once it is over. */
+export function Evidence({ data, unfolded }: { data: AlertData; unfolded: boolean }) {
+  const series = useMemo(() => evidenceSeries(data), [data]);
+  const [open, setOpen] = useState(unfolded && series !== null);
+  const rows = evidenceRows(data);
   if (rows.length === 0) return null;
   return (
-    <details className={css.evidence}>
+    <details className={css.evidence} open={open} onToggle={(event) => setOpen(event.currentTarget.open)}>
       <summary>Evidence</summary>
+      {open && series && <EvidenceChart series={series} />}
       <dl>
-        {rows.map(([name, value]) => {
-          const { label, unit } = labelled(name);
-          return (
-            <div key={name}>
-              <dt>{label}</dt>
-              <dd>
-                {shortened(value)}
-                {unit}
-              </dd>
-            </div>
-          );
-        })}
+        {rows.map(({ name, label, text }) => (
+          <div key={name}>
+            <dt>{label}</dt>
+            <dd>{text}</dd>
+          </div>
+        ))}
       </dl>
     </details>
   );

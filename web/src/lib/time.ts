@@ -8,6 +8,7 @@ const STEPS: readonly { unit: Intl.RelativeTimeFormatUnit; seconds: number }[] =
   { unit: "minute", seconds: 60 },
 ];
 const relative = new Intl.RelativeTimeFormat("en", { numeric: "always" });
+const second = new Intl.DateTimeFormat("en-GB", { timeStyle: "medium" });
 const moment = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle: "short" });
 
 /** "just now", "25 seconds ago", "3 hours ago". A clock that runs ahead of the service's gives "just now". */
@@ -23,6 +24,11 @@ export function ago(then: Date, now: Date): string {
 /** "22 Nov 2025, 10:20" on the reader's clock. */
 export function onTheClock(time: Date): string {
   return moment.format(time);
+}
+
+/** "10:20:05" on the reader's clock. */
+export function toTheSecond(time: Date): string {
+  return second.format(time);
 }
 
 /** Seconds as people say them: "23 s", "4 min", "2 h 5 min". */

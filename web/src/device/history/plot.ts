@@ -1,7 +1,8 @@
-/** Options of one angle's chart. Colours come from the page's own variables, so that light and dark both fit. */
-import uPlot from "uplot";
+/** One angle's chart. */
+import type uPlot from "uplot";
 import { wrap } from "../../lib/angles";
 import { fixed } from "../../lib/format";
+import { look, plotIn, timeTexts, withAlpha } from "../plot";
 
 export interface PlotSettings {
   element: HTMLElement;
@@ -20,34 +21,22 @@ const SYNC = "livella-angles";
 /** Pixels; a shorter drag is a click. */
 const SHORTEST_DRAG = 8;
 
-/** Make a chart that keeps the width of its element; gives it, and the function that takes it away. */
+/** Make the chart of an angle; gives it, and the function that takes it away. */
 export function makePlot(settings: PlotSettings): [uPlot, () => void] {
-  const { element } = settings;
-  const options = plotOptions(settings);
-  const plot = new uPlot(options, [[]], element);
-  const watcher = new ResizeObserver(() =>
-    plot.setSize({ width: element.clientWidth, height: options.height }),
-  );
-  watcher.observe(element);
-  return [
-    plot,
-    () => {
-      watcher.disconnect();
-      plot.destroy();
-    },
-  ];
+  return plotIn(settings.element, plotOptions(settings));
 }
 
-function plotOptions({ element, colour, timed, onCursor, onZoom }: PlotSettings): uPlot.Options {
+function plotOptions({
+  element,
+  colour,
+  timed,
+  onCursor,
+  onZoom,
+}: PlotSettings): Omit<uPlot.Options, "width"> {
   const axisHeight = timed ? HEIGHT.axis : 0;
-  const style = getComputedStyle(element);
-  const line = style.getPropertyValue("--livella-line");
-  const ink = style.getPropertyValue("--mantine-color-dimmed");
-  const font = `12px ${style.fontFamily}`;
-  const axis: uPlot.Axis = { stroke: ink, font, grid: { stroke: line, width: 1 }, ticks: { show: false } };
+  const { axis } = look(element);
   const edge: uPlot.Series = { stroke: "transparent", points: { show: false } };
   return {
-    width: element.clientWidth,
     height: HEIGHT.chart + axisHeight,
     legend: { show: false },
     cursor: {
@@ -76,20 +65,6 @@ function plotOptions({ element, colour, timed, onCursor, onZoom }: PlotSettings)
   };
 }
 
-const SECONDS = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit", second: "2-digit" });
-const MINUTES = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit" });
-const DAYS = new Intl.DateTimeFormat("en-GB", { day: "numeric", month: "short" });
-
-/** Times as fine as the steps between them; midnight shows the date. */
-function timeTexts(ticks: readonly number[], step: number): string[] {
-  const usual = step < 60 ? SECONDS : step < 86_400 ? MINUTES : DAYS;
-  return ticks.map((tick) => {
-    const time = new Date(tick * 1000);
-    const midnight = time.getHours() + time.getMinutes() + time.getSeconds() === 0;
-    return (midnight ? DAYS : usual).format(time);
-  });
-}
-
 /** The curve runs on beyond 180 degrees; its labels do not. */
 function tickText(tick: number): string {
   const degrees = wrap(tick);
@@ -101,10 +76,4 @@ function zoom(plot: uPlot, onZoom: PlotSettings["onZoom"]): void {
   if (width < SHORTEST_DRAG) return;
   onZoom(plot.posToVal(left, "x"), plot.posToVal(left + width, "x"));
   plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-}
-
-/** "#rrggbb" with an alpha. */
-function withAlpha(colour: string, alpha: number): string {
-  const hex = Math.round(alpha * 255).toString(16);
-  return `${colour.trim()}${hex.padStart(2, "0")}`;
 }
