@@ -139,6 +139,19 @@ def test_the_history_is_zoomed_and_unzoomed(visitor: Visitor, api: Api) -> None:
     expect(chart).to_be_visible()
 
 
+def test_a_moved_device_is_told_with_the_evidence(visitor: Visitor, api: Api) -> None:
+    story = drives.remounted()
+    api.add_device("van-1", name="Van 1").send_all(story.chunks[: story.moved + 1])
+    (alert,) = api.get("/alerts")["items"]
+    visitor.sign_in()
+    visitor.open("/devices/van-1")
+    shown = visitor.page.get_by_role("region", name="Alerts")
+    expect(shown).to_contain_text(alert["message"])
+    chart = shown.get_by_role("img", name="Evidence went from")
+    expect(chart).to_have_count(0 if alert["data"]["evidence"] is None else 1)
+    visitor.assert_accessible()
+
+
 def test_a_refit_begins_anew_and_keeps_the_history(visitor: Visitor, api: Api) -> None:
     device = api.add_device("van-1", name="Van 1")
     device.send_all(drives.plain().chunks)

@@ -27,7 +27,7 @@ function options(element: HTMLElement, series: EvidenceSeries): Omit<uPlot.Optio
     legend: { show: false },
     cursor: { show: false },
     scales: { x: { time: true }, y: { range: evidenceRange(series) } },
-    padding: [6, 12, 0, 0],
+    padding: [6, 28, 0, 0],
     axes: [
       { ...axis, size: 24, space: 70, values: (_, ticks, __, ___, step) => timeTexts(ticks, step) },
       { ...axis, size: 44, space: 28 },
@@ -53,6 +53,7 @@ function label(plot: uPlot, element: HTMLElement, { threshold, since }: Evidence
   const pixel = uPlot.pxRatio;
   ctx.save();
   ctx.font = font.replace("12px", `${12 * pixel}px`);
+  ctx.textAlign = "left";
   ctx.textBaseline = "bottom";
   ctx.fillStyle = limit;
   const y = plot.valToPos(threshold, "y", true) - 3 * pixel;
