@@ -83,17 +83,22 @@ def assert_says_how_it_moved(data: dict[str, Any], message: str) -> None:
         assert seen["value"][-1] >= seen["threshold"] > 0
 
 
-def test_a_newly_confirmed_mounting_resolves_it(moved: Device, api: Api, clock: Clock) -> None:
+def test_a_newly_confirmed_mounting_resolves_it_and_that_it_is_loose(
+    moved: Device, api: Api, clock: Clock, database: Database
+) -> None:
+    find_fault(database, core.Fault.DEVICE_LOOSE)
     clock.advance(7)
     shown = moved.send_all(remounted().chunks[len(until_moved()) :], start=len(until_moved()))["installation"]
-    (alert,) = api.get("/alerts")["items"]
+    found = api.get("/alerts")["items"]
+    assert [alert["kind"] for alert in found] == ["device_loose", "orientation_changed"]
     assert shown["open_alerts"] == 0
-    assert (alert["state"], alert["resolved_by"], alert["resolved_at"]) == (
-        "resolved",
-        "service",
-        "2024-05-06T07:08:16Z",
-    )
-    assert alert["resolve_note"] == "A new mounting was confirmed."
+    for alert in found:
+        assert (alert["state"], alert["resolved_by"], alert["resolved_at"]) == (
+            "resolved",
+            "service",
+            "2024-05-06T07:08:16Z",
+        )
+        assert alert["resolve_note"] == "A new mounting was confirmed."
 
 
 def test_a_restart_resolves_it(moved: Device, api: Api) -> None:
@@ -162,12 +167,16 @@ def test_a_milder_finding_does_not_hide_a_graver_one(moved: Device, api: Api, da
         assert alert["data"] == {"n": 3 if count == 3 else 1}
 
 
-@pytest.mark.parametrize("fault", core.Fault)
-def test_a_fault_lasts_until_a_restart(moved: Device, api: Api, database: Database, fault: core.Fault) -> None:
+def find_fault(database: Database, fault: core.Fault) -> None:
     event = core.Event(500.0, core.EventKind.FAULT, None, None, None, None, "what is wrong", None, 490.0, None, fault)
     with database.write() as tx:
         pk = tx.value(sa.select(tables.devices.c.pk))
         alerting.raise_for(tx, pk, event, Where("a", NOW, None), NOW)
+
+
+@pytest.mark.parametrize("fault", core.Fault)
+def test_a_fault_lasts_until_a_restart(moved: Device, api: Api, database: Database, fault: core.Fault) -> None:
+    find_fault(database, fault)
     kind = findings.ALERTS[fault][0]
     (alert,) = api.get(f"/alerts?kind={kind}")["items"]
     assert (alert["state"], alert["data"]["fault"]) == ("open", fault.value)
