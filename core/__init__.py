@@ -22,7 +22,8 @@ was switched off: the vehicle's attitude is unknown, the mounting kept), `restar
 `status`, and `encode`/`decode` (state <-> bytes).
 """
 
-from core import quaternion
+from core import accelerometer, quaternion
+from core.accelerometer import AccelerometerCalibration, CalibrationError
 from core.estimator import advance, begin_session, initial_state, restart, status
 from core.events import (
     Estimate,
@@ -48,6 +49,8 @@ __all__ = [
     "FIX_COLUMNS",
     "PRESETS",
     "THESIS",
+    "AccelerometerCalibration",
+    "CalibrationError",
     "Estimate",
     "Estimates",
     "Event",
@@ -65,6 +68,7 @@ __all__ = [
     "State",
     "Status",
     "Verification",
+    "accelerometer",
     "advance",
     "begin_session",
     "decode",
