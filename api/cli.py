@@ -66,6 +66,27 @@ def replay(
 
 
 @app.command()
+def calibrate(
+    logs: Annotated[
+        list[Path], typer.Argument(help="Logs of one device that lay still in nine poses.", show_default=False)
+    ],
+    log_format: LogFormat = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    out: Annotated[
+        Path | None, typer.Option("--output", help="File for the device's setting, JSON.", show_default=False)
+    ] = None,
+) -> None:
+    """Find gains and offsets of an accelerometer from poses in which it lay still.
+
+    Exit status 2 when a log cannot be read or its poses are not enough.
+    """
+    from api.commands import calibrate as command
+    from api.formats.files import Format
+
+    command.run(logs, log_format and Format(log_format), as_json, out)
+
+
+@app.command()
 def simulate(
     out: Annotated[Path, typer.Argument(help="Log to write, .csv or .csv.gz.", show_default=False)],
     route: Annotated[
