@@ -1,9 +1,12 @@
 """The API's documents. Names, units and meanings are fixed by the contract; angles in degrees, else SI, times UTC."""
 
 from datetime import datetime
-from typing import Annotated, Any, Generic, Literal, TypeVar
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+
+import core
 
 Role = Literal["device", "installer", "manager", "admin"]
 StageName = Literal["waiting", "aligning", "settling", "verifying", "confirmed"]
@@ -175,6 +178,21 @@ class Estimates(Document):
 # ---------------------------------------------------------------- devices and chunks
 
 
+class AccelerometerCalibration(Document):
+    """Errors of a device's accelerometer: it reads gain f + offset; `livella calibrate` finds them."""
+
+    gain: Matrix3 = Field(
+        description="Symmetric, no unit: gains of x, y, z from 0.8 to 1.2, cross gains less than 0.2 in size."
+    )
+    offset: Vector3 = Field(description="m/s2, each less than 3 in size.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        gain, offset = np.array(self.gain), np.array(self.offset)
+        core.accelerometer.check(core.AccelerometerCalibration(gain, offset))
+        return self
+
+
 class DeviceDraft(Document):
     """A device to register."""
 
@@ -182,6 +200,7 @@ class DeviceDraft(Document):
     name: Name
     vehicle: Name | None = None
     notes: Notes | None = None
+    accelerometer_calibration: AccelerometerCalibration | None = None
 
 
 class DevicePatch(Document):
@@ -190,6 +209,10 @@ class DevicePatch(Document):
     name: Name = Field("", description="Not null: a device always has a name.")
     vehicle: Name | None = None
     notes: Notes | None = None
+    accelerometer_calibration: AccelerometerCalibration | None = Field(
+        None,
+        description="Tells on the chunks applied from now on; with a mounting, restart the installation afterwards.",
+    )
 
 
 class Device(Document):
@@ -199,6 +222,7 @@ class Device(Document):
     name: str
     vehicle: str | None
     notes: str | None
+    accelerometer_calibration: AccelerometerCalibration | None
     created_at: datetime
     stage: StageName
     progress: float

@@ -19,12 +19,13 @@ the device's monotonic clock within a session.
 
 The door: `advance(params, state, samples) -> (state, outcome)`. Beside it `initial_state`, `begin_session` (the device
 was switched off: the vehicle's attitude is unknown, the mounting kept), `restart` (the device was refitted on purpose),
-`status`, and `encode`/`decode` (state <-> bytes).
+`level_start` (the vehicle stands on level ground), `status`, and `encode`/`decode` (state <-> bytes). Readings of an
+accelerometer whose errors are known go through `accelerometer.apply` first.
 """
 
 from core import accelerometer, quaternion
 from core.accelerometer import AccelerometerCalibration, CalibrationError
-from core.estimator import advance, begin_session, initial_state, restart, status
+from core.estimator import NotStillError, advance, begin_session, initial_state, level_start, restart, status
 from core.events import (
     Estimate,
     Estimates,
@@ -59,6 +60,7 @@ __all__ = [
     "Fault",
     "Mount",
     "Needs",
+    "NotStillError",
     "Outcome",
     "Parameters",
     "SampleError",
@@ -74,6 +76,7 @@ __all__ = [
     "decode",
     "encode",
     "initial_state",
+    "level_start",
     "quaternion",
     "restart",
     "status",

@@ -41,10 +41,16 @@ _REASONS = (
     "the estimate moved on while the candidate was tested",
     "the drive did not show the mounting well enough",
 )
+STILL_TIME = 2.0
+"""s without motion after which the vehicle is taken to stand still"""
 _WITH_EVIDENCE = (EventKind.ORIENTATION_CHANGED, EventKind.FAULT)
 _ROW = 14
 _EVENT_ROW = 18
 _EVENTS_PER_FIX = 6
+
+
+class NotStillError(ValueError):
+    """The vehicle is not standing still, as far as the data show; the message is a sentence that says why."""
 
 
 def initial_state(params: Parameters) -> State:
@@ -65,6 +71,23 @@ def begin_session(params: Parameters, state: State) -> State:
 def restart(params: Parameters, state: State) -> State:
     """Forget everything about the mounting, because the device was refitted; the session goes on."""
     return initial_state(params)._replace(clock=state.clock.copy())
+
+
+def level_start(params: Parameters, state: State) -> State:
+    """Take it that the vehicle stands on level ground now (static start of an inertial sensor).
+
+    Raises
+    ------
+    NotStillError
+        there is no data in this session, or the vehicle was in motion within the last two seconds of it
+    """
+    del params
+    clock = state.clock[0]
+    if math.isnan(clock["t"]):
+        raise NotStillError("The device has sent no data since it was switched on.")
+    if clock["t"] - clock["motion_t"] < STILL_TIME:
+        raise NotStillError(f"The vehicle was moving within the last {STILL_TIME:.0f} seconds of what the device sent.")
+    return state.copy()  # the check alone so far: gravity is not yet taken into the coarse alignment
 
 
 def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, Outcome]:

@@ -17,6 +17,8 @@ class Device(NamedTuple):
     name: str
     vehicle: str | None
     notes: str | None
+    accelerometer_calibration: dict[str, Any] | None
+    """`gain` (3x3) and `offset` (3, m/s2)"""
     created_at: datetime
     stage: str
     status: dict[str, Any]
@@ -46,6 +48,7 @@ _select = sa.select(
     devices.c.name,
     devices.c.vehicle,
     devices.c.notes,
+    devices.c.accelerometer_calibration,
     devices.c.created_at,
     installations.c.stage,
     installations.c.status,
@@ -56,6 +59,7 @@ _select = sa.select(
 ).join_from(devices, installations)
 _find = _select.where(devices.c.id == sa.bindparam("id"))
 _pk = sa.select(devices.c.pk).where(devices.c.id == sa.bindparam("id"))
+_accelerometer_calibration = sa.select(devices.c.accelerometer_calibration).where(devices.c.pk == sa.bindparam("pk"))
 _add = sa.insert(devices).returning(devices.c.pk)
 _edit = sa.update(devices).where(devices.c.pk == sa.bindparam("of_pk"))
 _remove = sa.delete(devices).where(devices.c.pk == sa.bindparam("pk"))
@@ -94,14 +98,19 @@ def page(
     return tx.all(Device, statement)
 
 
-def add(tx: WriteSession, device_id: str, name: str, vehicle: str | None, notes: str | None, now: datetime) -> int:
-    """Register a device; `IntegrityError` when the id is taken."""
-    added = tx.execute(_add, id=device_id, name=name, vehicle=vehicle, notes=notes, created_at=now)
-    return int(added.scalar_one())
+def accelerometer_calibration(tx: ReadSession, pk: int) -> dict[str, Any] | None:
+    """Give `gain` (3x3) and `offset` (3, m/s2) of a device, None when it is taken as it reads."""
+    found: dict[str, Any] | None = tx.value(_accelerometer_calibration, pk=pk)
+    return found
+
+
+def add(tx: WriteSession, device_id: str, values: dict[str, Any], now: datetime) -> int:
+    """Register a device with the values of its columns; `IntegrityError` when the id is taken."""
+    return int(tx.execute(_add, id=device_id, created_at=now, **values).scalar_one())
 
 
 def edit(tx: WriteSession, pk: int, values: dict[str, Any]) -> None:
-    """Change the texts of a device."""
+    """Change the texts of a device, or its accelerometer's calibration."""
     if values:
         tx.execute(_edit, of_pk=pk, **values)
 

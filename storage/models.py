@@ -74,6 +74,7 @@ devices = sa.Table(
     sa.Column("name", NAME, nullable=False),
     sa.Column("vehicle", NAME),
     sa.Column("notes", sa.Text),
+    sa.Column("accelerometer_calibration", sa.JSON(none_as_null=True)),
     sa.Column("created_at", Instant, nullable=False),
     sqlite_autoincrement=True,
 )

@@ -42,7 +42,11 @@ def read_device(device_id: KnownId, context: CurrentContext) -> schemas.Device:
 
 @router.patch("/{device_id}")
 def edit_device(device_id: KnownId, patch: schemas.DevicePatch, context: CurrentContext) -> schemas.Device:
-    """Change name, vehicle or notes; what is left out stays, null clears vehicle or notes."""
+    """Change name, vehicle, notes or the accelerometer's calibration; what is left out stays, null clears it.
+
+    A calibration tells on the chunks applied from then on. A mounting found with other readings may be off by what the
+    calibration corrects: restart the installation afterwards.
+    """
     return fleet.edit(context, device_id, patch.model_dump(exclude_unset=True))
 
 

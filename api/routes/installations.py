@@ -29,6 +29,15 @@ def restart_installation(device_id: AnyDevice, context: CurrentContext) -> schem
     return fleet.restart(context, device_id)
 
 
+@router.post("/installation/level", dependencies=[Depends(Requires(Role.INSTALLER))])
+def level_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
+    """Take it that the vehicle stands on level ground now: gravity then shows how the device is tilted.
+
+    409 `not-still`: the device's last data do not show it standing still, or are not new enough to tell.
+    """
+    return fleet.level_start(context, device_id)
+
+
 @router.get("/estimates")
 def read_estimates(
     device_id: AnyDevice,

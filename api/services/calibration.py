@@ -1,6 +1,7 @@
 """The estimator of one device during one transaction: loaded once, advanced chunk by chunk, saved once."""
 
 import logging
+from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -10,8 +11,8 @@ from api import schemas
 from api.formats.log import Reading
 from api.services import alerting, findings, history, presenting, publishing
 from api.services.context import Context
-from api.services.errors import NotFoundError, UnusableError
-from storage import installations, mounts
+from api.services.errors import NotFoundError, NotStillError, UnusableError
+from storage import devices, installations, mounts
 from storage.database import WriteSession
 from storage.installations import Installation
 from storage.sessions import Session
@@ -20,6 +21,9 @@ log = logging.getLogger(__name__)
 
 LONGEST_TIME = 1e10
 """s, largest reading of a device's clock that is believed: three centuries"""
+
+LEVEL_WITHIN = timedelta(minutes=5)
+"""Older data do not tell where the vehicle stands now; devices send about once a minute."""
 
 STAGES = {stage.word: stage for stage in core.Stage}
 
@@ -73,6 +77,29 @@ class Calibration:
         self._show(core.status(self.context.params, self.state))
         self.row = self.row._replace(since_session_pk=None, since_t=None, since_at=self.now)
 
+    def level_start(self) -> None:
+        """The vehicle stands on level ground now.
+
+        Raises
+        ------
+        NotStillError
+            the last data are old, or do not show it standing still; nothing has changed.
+        """
+        last_data_at = self.row.last_data_at
+        if last_data_at is not None and self.now - last_data_at > LEVEL_WITHIN:
+            minutes = LEVEL_WITHIN // timedelta(minutes=1)
+            raise NotStillError(
+                f"The device has sent nothing for {minutes} minutes: nobody can tell if it stands still."
+            )
+        try:
+            self._state = core.level_start(self.context.params, self.state)
+        except core.NotStillError as error:
+            raise NotStillError(str(error)) from error
+        before = self.row.stage
+        self._show(core.status(self.context.params, self.state))
+        if self.row.stage != before:
+            self.row = self.row._replace(since_session_pk=None, since_t=None, since_at=self.now)
+
     def apply(self, session: Session, reading: Reading, received_at: datetime) -> tuple[Session, core.Outcome | None]:
         """Advance by one chunk of the current session; give the session as it is then, and what the chunk did.
 
@@ -86,7 +113,7 @@ class Calibration:
             return session, None
         t_last = last_time(reading.samples)
         try:
-            state, outcome = core.advance(self.context.params, self.state, reading.samples)
+            state, outcome = core.advance(self.context.params, self.state, self._corrected(reading.samples))
         except core.SampleError as error:
             raise UnusableError(str(error)) from error
         self._state = state
@@ -94,6 +121,14 @@ class Calibration:
         session = session._replace(started_at=min(session.started_at or began, began))
         self._record(session, outcome, t_last, received_at)
         return session, outcome
+
+    def _corrected(self, samples: core.Samples) -> core.Samples:
+        """Take the accelerometer's errors off, where they are known."""
+        known = devices.accelerometer_calibration(self.tx, self.row.device_pk)
+        if known is None:
+            return samples
+        calibration = core.AccelerometerCalibration(np.array(known["gain"]), np.array(known["offset"]))
+        return replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))
 
     def _record(self, session: Session, outcome: core.Outcome, t_last: float, received_at: datetime) -> None:
         """Keep what a chunk brought: history, mountings, alerts, status."""

@@ -61,6 +61,13 @@ class SessionEndedError(ConflictError):
     title = "The session has ended"
 
 
+class NotStillError(ConflictError):
+    """The vehicle is not standing still, as far as the device has told."""
+
+    kind = "not-still"
+    title = "The vehicle is not standing still"
+
+
 class UnusableError(ServiceError):
     """The samples cannot be used."""
 

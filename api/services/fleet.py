@@ -34,7 +34,7 @@ def register(context: Context, draft: schemas.DeviceDraft) -> schemas.Registered
 
 def _add(tx: WriteSession, context: Context, device_id: str, draft: schemas.DeviceDraft, key: str) -> schemas.Device:
     now = context.clock()
-    pk = devices.add(tx, device_id, draft.name, draft.vehicle, draft.notes, now)
+    pk = devices.add(tx, device_id, draft.model_dump(exclude={"id"}), now)
     installations.add(tx, _fresh(context, pk, now))
     keys.add(tx, access.digest(key), Role.DEVICE.word, device_id, now, device_pk=pk)
     return publishing.device_changed(tx, device_id, "registered", now)
@@ -58,7 +58,7 @@ def find(context: Context, device_id: str) -> schemas.Device:
 
 
 def edit(context: Context, device_id: str, changes: dict[str, Any]) -> schemas.Device:
-    """Change the texts of a device."""
+    """Change the texts of a device, or the calibration of its accelerometer for the chunks still to be applied."""
     now = context.clock()
     with context.database.write() as tx:
         devices.edit(tx, locked(tx, device_id), changes)
@@ -105,6 +105,17 @@ def restart(context: Context, device_id: str) -> schemas.Installation:
     with context.database.write() as tx:
         calibration = Calibration.open(tx, context, device_id)
         calibration.restart()
+        calibration.save()
+        shown = calibration.shown()
+    context.wake()
+    return shown
+
+
+def level_start(context: Context, device_id: str) -> schemas.Installation:
+    """Take it from an installer that the vehicle stands on level ground."""
+    with context.database.write() as tx:
+        calibration = Calibration.open(tx, context, device_id)
+        calibration.level_start()
         calibration.save()
         shown = calibration.shown()
     context.wake()

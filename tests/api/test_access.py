@@ -27,6 +27,7 @@ NEEDED = {
     ("POST", "/devices/box-1/chunks"): "device",
     ("GET", "/devices/box-1/installation"): "device",
     ("POST", "/devices/box-1/installation/restart"): "installer",
+    ("POST", "/devices/box-1/installation/level"): "installer",
     ("GET", "/devices/box-1/estimates"): "device",
     ("GET", "/devices/box-1/mounts"): "device",
     ("GET", "/devices/box-1/mounts/1"): "device",

@@ -19,6 +19,7 @@ def test_registering_shows_the_device_and_its_key_once(api: Api, clock: Clock) -
         "name": "Truck 7",
         "vehicle": "MAN",
         "notes": "left",
+        "accelerometer_calibration": None,
         "created_at": "2024-05-06T07:08:09Z",
         "stage": "waiting",
         "progress": 0.0,

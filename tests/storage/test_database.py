@@ -25,7 +25,7 @@ def tables(database: Database) -> Database:
 
 def add_device(database: Database, device_id: str = "a") -> int:
     with database.write() as tx:
-        pk = devices.add(tx, device_id, "A", None, None, NOW)
+        pk = devices.add(tx, device_id, {"name": "A"}, NOW)
         installations.add(
             tx,
             Installation(pk, None, None, "waiting", None, None, NOW, {"progress": 0.0}, last_data_at=None, revision=0),
@@ -36,7 +36,7 @@ def add_device(database: Database, device_id: str = "a") -> int:
 def test_a_failed_transaction_leaves_nothing(tables: Database) -> None:
     def fail() -> None:
         with tables.write() as tx:
-            devices.add(tx, "a", "A", None, None, NOW)
+            devices.add(tx, "a", {"name": "A"}, NOW)
             raise RuntimeError
 
     with pytest.raises(RuntimeError):

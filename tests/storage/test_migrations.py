@@ -10,6 +10,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
+from storage import devices
 from storage.database import Database
 from storage.migrate import config, upgrade
 from storage.models import metadata
@@ -96,3 +97,21 @@ def test_of_processes_that_start_at_once_one_shows_the_admin_key(empty_url: str,
     assert [start.returncode for start in starts] == [0, 0, 0]
     assert sorted(shown)[:2] == ["None", "None"]
     assert sorted(shown)[2].startswith("livella_")
+
+
+def test_devices_and_what_hangs_on_them_survive_the_second_migration_and_its_undoing(empty_url: str) -> None:
+    database = Database(empty_url)
+    with database.write() as tx:
+        command.upgrade(config(tx.connection), "0001")
+        tx.execute(sa.text("INSERT INTO devices (pk, id, name, created_at) VALUES (1, 'a', 'A', 0)"))
+        tx.execute(sa.text("INSERT INTO sessions (pk, device_pk, name, next_seq, created_at) VALUES (1, 1, 's', 3, 0)"))
+    upgrade(database)
+    with database.write() as tx:
+        assert devices.accelerometer_calibration(tx, 1) is None
+        devices.edit(tx, 1, {"accelerometer_calibration": {"gain": [[1.1]], "offset": [0.1]}})
+        assert devices.accelerometer_calibration(tx, 1) == {"gain": [[1.1]], "offset": [0.1]}
+        command.downgrade(config(tx.connection), "0001")
+    with database.read() as tx:
+        assert tx.value(sa.text("SELECT name FROM devices")) == "A"
+        assert tx.value(sa.text("SELECT next_seq FROM sessions")) == 3
+    database.close()

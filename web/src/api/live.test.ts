@@ -26,6 +26,7 @@ const device = (over: Partial<Device> = {}): Device => ({
   name: "Van 1",
   vehicle: null,
   notes: null,
+  accelerometer_calibration: null,
   created_at: "2025-11-22T09:00:00Z",
   stage: "settling",
   progress: 0.5,

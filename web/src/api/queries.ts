@@ -103,9 +103,22 @@ export function useRegister() {
 }
 
 export function useRestart(id: string) {
+  return useInstallationChange(id, () =>
+    answer(http.POST("/api/v1/devices/{device_id}/installation/restart", of(id))),
+  );
+}
+
+export function useLevelStart(id: string) {
+  return useInstallationChange(id, () =>
+    answer(http.POST("/api/v1/devices/{device_id}/installation/level", of(id))),
+  );
+}
+
+/** Something an installer does to the installation; the service answers with what it then is. */
+function useInstallationChange(id: string, change: () => Promise<Installation>) {
   const client = useQueryClient();
   return useMutation({
-    mutationFn: () => answer(http.POST("/api/v1/devices/{device_id}/installation/restart", of(id))),
+    mutationFn: change,
     onSuccess: (installation) => {
       client.setQueryData(keys.installation(id), installation);
       client.invalidateQueries({ queryKey: keys.device(id) });

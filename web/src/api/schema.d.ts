@@ -119,7 +119,10 @@ export interface paths {
         head?: never;
         /**
          * Edit Device
-         * @description Change name, vehicle or notes; what is left out stays, null clears vehicle or notes.
+         * @description Change name, vehicle, notes or the accelerometer's calibration; what is left out stays, null clears it.
+         *
+         *     A calibration tells on the chunks applied from then on. A mounting found with other readings may be off by what the
+         *     calibration corrects: restart the installation afterwards.
          */
         patch: operations["edit_device"];
         trace?: never;
@@ -182,6 +185,28 @@ export interface paths {
          * @description Begin anew after a deliberate refit: the mounting is forgotten, the history kept.
          */
         post: operations["restart_installation"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/devices/{device_id}/installation/level": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Level Installation
+         * @description Take it that the vehicle stands on level ground now: gravity then shows how the device is tilted.
+         *
+         *     409 `not-still`: the device's last data do not show it standing still, or are not new enough to tell.
+         */
+        post: operations["level_installation"];
         delete?: never;
         options?: never;
         head?: never;
@@ -396,6 +421,42 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
+         * AccelerometerCalibration
+         * @description Errors of a device's accelerometer: it reads gain f + offset; `livella calibrate` finds them.
+         */
+        AccelerometerCalibration: {
+            /**
+             * Gain
+             * @description Symmetric, no unit: gains of x, y, z from 0.8 to 1.2, cross gains less than 0.2 in size.
+             */
+            gain: [
+                [
+                    number,
+                    number,
+                    number
+                ],
+                [
+                    number,
+                    number,
+                    number
+                ],
+                [
+                    number,
+                    number,
+                    number
+                ]
+            ];
+            /**
+             * Offset
+             * @description m/s2, each less than 3 in size.
+             */
+            offset: [
+                number,
+                number,
+                number
+            ];
+        };
+        /**
          * Alert
          * @description A finding somebody should know about.
          */
@@ -540,6 +601,7 @@ export interface components {
             vehicle: string | null;
             /** Notes */
             notes: string | null;
+            accelerometer_calibration: components["schemas"]["AccelerometerCalibration"] | null;
             /**
              * Created At
              * Format: date-time
@@ -592,6 +654,7 @@ export interface components {
             vehicle?: string | null;
             /** Notes */
             notes?: string | null;
+            accelerometer_calibration?: components["schemas"]["AccelerometerCalibration"] | null;
         };
         /**
          * DevicePatch
@@ -608,6 +671,8 @@ export interface components {
             vehicle?: string | null;
             /** Notes */
             notes?: string | null;
+            /** @description Tells on the chunks applied from now on; with a mounting, restart the installation afterwards. */
+            accelerometer_calibration?: components["schemas"]["AccelerometerCalibration"] | null;
         };
         /**
          * Estimate
@@ -1412,6 +1477,37 @@ export interface operations {
         };
     };
     restart_installation: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                device_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Installation"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    level_installation: {
         parameters: {
             query?: never;
             header?: never;

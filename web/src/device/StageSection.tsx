@@ -1,15 +1,19 @@
 import { CircleCheckBig, TriangleAlert } from "lucide-react";
+import { useMay } from "../api/session";
 import type { Installation, Need, Verification } from "../api/types";
 import { ClockTime } from "../components/RelativeTime";
 import { Progress } from "../components/StageBadge";
 import { Notice } from "../components/Tone";
 import { NEED, STAGE } from "../lib/stages";
+import { LevelStart } from "./LevelStart";
+import { levelHelps } from "./level";
 import { Stepper } from "./Stepper";
 import css from "./stage.module.css";
 
 /** The answer to "what now?", large enough to read at arm's length. */
 export function StageSection({ installation }: { installation: Installation }) {
   const { stage, hint, needs, progress, mount, verification } = installation;
+  const installer = useMay("installer");
   return (
     <section className={`card ${css.stage}`} data-stage={stage} aria-label="Stage of the calibration">
       <Stepper stage={stage} />
@@ -20,6 +24,7 @@ export function StageSection({ installation }: { installation: Installation }) {
       {verification.state === "running" && <Countdown verification={verification} />}
       {mount?.status === "suspect" && <Suspect since={mount.confirmed_at} />}
       {needs.length > 0 && <Needs needs={needs} />}
+      {installer && levelHelps(installation) && <LevelStart id={installation.device_id} />}
       <div className={css.progress}>
         <Progress stage={stage} progress={progress} />
         <span aria-hidden>{Math.round(progress * 100)} %</span>
