@@ -123,6 +123,11 @@ def angle_between(a: Floats, b: Floats) -> Floats:
     return angle
 
 
+def stack(poses: Sequence[Pose]) -> tuple[Floats, Floats]:
+    """Give the readings (P, 3) and their sigmas (P,) of poses, m/s2."""
+    return np.array([pose.reading for pose in poses]).reshape(-1, 3), np.array([pose.sigma for pose in poses])
+
+
 def _still(recording: Samples) -> Iterator[Pose]:
     """Give the stretches in which the readings stay where they are."""
     windows = _windows(recording)
@@ -193,8 +198,3 @@ def _mean(a: Pose, b: Pose) -> Pose:
     share = b.seconds / (a.seconds + b.seconds)
     sigma = float(np.hypot((1 - share) * a.sigma, share * b.sigma))
     return Pose((1 - share) * a.reading + share * b.reading, sigma, a.seconds + b.seconds)
-
-
-def stack(poses: Sequence[Pose]) -> tuple[Floats, Floats]:
-    """Give the readings (P, 3) and their sigmas (P,) of poses, m/s2."""
-    return np.array([pose.reading for pose in poses]).reshape(-1, 3), np.array([pose.sigma for pose in poses])
