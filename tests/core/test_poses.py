@@ -100,3 +100,16 @@ def test_what_is_missing_is_told_in_words() -> None:
     )
     assert missing(np.delete(HELD, 5, axis=0)) == ("with its z axis down",)
     assert len(missing(np.empty((0, 3)))) == 9
+
+
+def test_a_device_held_in_the_hand_does_not_lie_still() -> None:
+    table, hand = recording(HELD[:1], noise=0.03), recording(HELD[1:2], noise=0.12, seed=1)
+    f_s = np.vstack([table.f_s, hand.f_s])
+    poses = find_poses([Samples.make(np.arange(len(f_s)) / 50, f_s)])
+    np.testing.assert_allclose([pose.reading for pose in poses], HELD[:1], atol=0.05)
+
+
+def test_short_looks_with_gaps_between_show_no_rest() -> None:
+    """Half a second on record, two seconds not."""
+    t = np.concatenate([2.5 * n + np.arange(25) / 50 for n in range(9)])
+    assert find_poses([Samples.make(t, np.repeat(HELD, 25, axis=0))]) == []
