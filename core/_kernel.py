@@ -1101,7 +1101,7 @@ def predict(p, m, period, n):
 
 @njit(cache=True, nogil=True)
 def predict_force(m, period, share, up, force, jacobian):
-    """Specific force in vehicle axes and its Jacobian with respect to the states before MOUNTING and the slow ones.
+    """Specific force in vehicle axes and its Jacobian.
 
     Kinematic acceleration of the device by Rivals' formula (seed 004 eq. 4), gravity on the road's slope, and the body
     leaning on its springs. `share` is the part of the epoch between its middle, which the means stand for, and its end.
@@ -1140,6 +1140,8 @@ def predict_force(m, period, share, up, force, jacobian):
         d_road[ATTITUDE + i] = GRAVITY * x
         d_side[ATTITUDE + i] = GRAVITY * y + lateral * z
         d_stiff[ATTITUDE + i] = GRAVITY * z - lateral * y
+    jacobian[0, BOUNCE + 1] = jacobian[0, BOUNCE_BEFORE + 1] = -0.5 * GRAVITY
+    jacobian[1, BOUNCE] = jacobian[1, BOUNCE_BEFORE] = 0.5 * GRAVITY
     for j in range(GYRO_BIAS):
         d_road[j] += d_forward[j]
         d_side[j] += up[2] * d_lateral[j]
@@ -1179,7 +1181,8 @@ def predict_rate(m, period, up, rate, jacobian):
     rate[2] = turning * up[2]
     for i in range(2):
         rate[i] += (m["bounce"][i] - m["bounce_before"][i]) / period
-    jacobian[:] = 0.0
+        jacobian[i, BOUNCE + i] = 1.0 / period
+        jacobian[i, BOUNCE_BEFORE + i] = -1.0 / period
     jacobian[0, SPEED] = m["gradient"][0] + lean * turning
     jacobian[1, SPEED] = m["gradient"][1]
     jacobian[1, ACCELERATION] = -dive
@@ -1198,16 +1201,20 @@ def predict_rate(m, period, up, rate, jacobian):
 
 
 @njit(cache=True, nogil=True)
-def to_sensor(r_vs, vector, jacobian, z, h):
-    """R_sv times a vector of the vehicle and its Jacobian, with the columns of the mounting."""
-    for i in range(3):
-        x, y, w = r_vs[0, i], r_vs[1, i], r_vs[2, i]
-        z[i] = x * vector[0] + y * vector[1] + w * vector[2]
-        for j in range(GYRO_BIAS):
-            h[i, j] = x * jacobian[0, j] + y * jacobian[1, j] + w * jacobian[2, j]
-        h[i, MOUNTING] = y * vector[2] - w * vector[1]
-        h[i, MOUNTING + 1] = w * vector[0] - x * vector[2]
-        h[i, MOUNTING + 2] = x * vector[1] - y * vector[0]
+def add_mounting(vector, h):
+    """Columns of the mounting for a vector read in sensor axes and turned into the vehicle's: [vector x]."""
+    h[0, MOUNTING + 1] = -vector[2]
+    h[0, MOUNTING + 2] = vector[1]
+    h[1, MOUNTING] = vector[2]
+    h[1, MOUNTING + 2] = -vector[0]
+    h[2, MOUNTING] = -vector[1]
+    h[2, MOUNTING + 1] = vector[0]
+
+
+@njit(cache=True, nogil=True)
+def turned(r, vector, i):
+    """Component i of R times a vector."""
+    return r[i, 0] * vector[0] + r[i, 1] * vector[1] + r[i, 2] * vector[2]
 
 
 @njit(cache=True, nogil=True)
@@ -1229,33 +1236,32 @@ def predict_velocity(m, r_nv, z, h):
 
 
 @njit(cache=True, nogil=True)
-def predict_measurements(p, m, e, z, h):
-    """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate, altitude."""
-    r_nv, r_vs = np.empty((3, 3)), np.empty((3, 3))
-    vector, jacobian = np.empty(3), np.empty((3, GYRO_BIAS))
+def predict_measurements(p, m, e, r_vs, z, h):
+    """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate, altitude.
+
+    What the sensor reads is turned into the axes of the vehicle, as far as they are known, and predicted there: all that
+    the update does to a component (gate, learnt noise) then turns with the log.
+    """
+    r_nv = np.empty((3, 3))
     rotation_matrix(m["q_nv"], r_nv)
-    rotation_matrix(m["q_vs"], r_vs)
     up = r_nv[2]
     h[:] = 0.0
-    predict_force(m, e["period"], p["filter_mean_share"], up, vector, jacobian)
-    to_sensor(r_vs, vector, jacobian, z[FORCE:], h[FORCE:])
+    predict_force(m, e["period"], p["filter_mean_share"], up, z[FORCE:], h[FORCE:])
+    add_mounting(z[FORCE:], h[FORCE:])
     predict_velocity(m, r_nv, z[VELOCITY:], h[VELOCITY:])
     if e["gyro"]:
-        predict_rate(m, e["period"], up, vector, jacobian)
-        to_sensor(r_vs, vector, jacobian, z[RATE:], h[RATE:])
+        predict_rate(m, e["period"], up, z[RATE:], h[RATE:])
+        add_mounting(z[RATE:], h[RATE:])
     for i in range(3):
-        z[FORCE + i] += m["bias"][i]
-        h[FORCE + i, BIAS + i] = 1.0
-        h[FORCE + i, LATENCY] = e["f_slope"][i]
-        h[FORCE + i, BOUNCE] = h[FORCE + i, BOUNCE_BEFORE] = 0.5 * r_vs[1, i] * GRAVITY
-        h[FORCE + i, BOUNCE + 1] = h[FORCE + i, BOUNCE_BEFORE + 1] = -0.5 * r_vs[0, i] * GRAVITY
+        z[FORCE + i] += turned(r_vs, m["bias"], i)
+        h[FORCE + i, LATENCY] = turned(r_vs, e["f_slope"], i)
+        for j in range(3):
+            h[FORCE + i, BIAS + j] = r_vs[i, j]
         if e["gyro"]:
-            for j in range(2):
-                h[RATE + i, BOUNCE + j] = r_vs[j, i] / e["period"]
-                h[RATE + i, BOUNCE_BEFORE + j] = -r_vs[j, i] / e["period"]
-            z[RATE + i] += m["gyro_bias"][i]
-            h[RATE + i, GYRO_BIAS + i] = 1.0
-            h[RATE + i, LATENCY] = e["w_slope"][i]
+            z[RATE + i] += turned(r_vs, m["gyro_bias"], i)
+            h[RATE + i, LATENCY] = turned(r_vs, e["w_slope"], i)
+            for j in range(3):
+                h[RATE + i, GYRO_BIAS + j] = r_vs[i, j]
     for row in (COURSE_RATE, STANDSTILL):
         z[row] = m["yaw_rate"]
         h[row, YAW_RATE] = 1.0
@@ -1264,12 +1270,12 @@ def predict_measurements(p, m, e, z, h):
 
 
 @njit(cache=True, nogil=True)
-def observe(p, m, e, y, noise):
+def observe(p, m, e, r_vs, y, noise):
     """Fill the measurements y and their standard deviations; infinite = not measured in this epoch."""
     noise[:] = np.inf
     y[:] = 0.0
     for i in range(3):
-        y[FORCE + i] = e["f_s"][i]
+        y[FORCE + i] = turned(r_vs, e["f_s"], i)
         noise[FORCE + i] = p["filter_accelerometer_noise"] * learnt_noise(p, m, 2)
     if math.isfinite(e["course"]):
         y[VELOCITY] = e["speed"] * math.sin(e["course"])
@@ -1286,7 +1292,7 @@ def observe(p, m, e, y, noise):
         noise[COURSE_RATE] = p["filter_course_rate_noise"]
     if e["gyro"]:
         for i in range(3):
-            y[RATE + i] = e["w_s"][i]
+            y[RATE + i] = turned(r_vs, e["w_s"], i)
             noise[RATE + i] = p["filter_gyro_noise"]
     if e["mean_speed"] < 0.3 * p["epoch_moving_speed"]:
         noise[STANDSTILL] = p["filter_standstill_yaw_rate_noise"]
@@ -1301,9 +1307,10 @@ def update(p, m, e, n):
     cov = m["covariance"]
     z, y, noise = np.empty(MEASUREMENTS), np.empty(MEASUREMENTS), np.empty(MEASUREMENTS)
     h = np.empty((MEASUREMENTS, STATES))
-    dx, ph = np.zeros(STATES), np.empty(STATES)
-    predict_measurements(p, m, e, z, h)
-    observe(p, m, e, y, noise)
+    dx, ph, r_vs = np.zeros(STATES), np.empty(STATES), np.empty((3, 3))
+    rotation_matrix(m["q_vs"], r_vs)
+    predict_measurements(p, m, e, r_vs, z, h)
+    observe(p, m, e, r_vs, y, noise)
     if not math.isfinite(noise[VELOCITY]):  # no course: the speed alone, along the vehicle
         h[VELOCITY, :] = 0.0
         h[VELOCITY, SPEED] = 1.0
