@@ -38,6 +38,8 @@ FORCE, VELOCITY, COURSE_RATE, RATE, STANDSTILL, HEIGHT = 0, 3, 6, 7, 10, 11
 """First row of each measurement: specific force (3), velocity (3), yaw rate from the course, angular rate (3), yaw rate
 at standstill, altitude."""
 MEASUREMENTS = 12
+VELOCITIES, HEIGHTS, FORCES, LATELY = range(4)
+"""Kinds of measurements whose noise is learnt; the last is that of the velocity over the last seconds."""
 
 DUPLICATE_TIME, BEFORE_PREVIOUS, FIX_WITHOUT_VELOCITY, FIX_IMPLAUSIBLE = range(4)
 """Reasons of rejection."""
@@ -835,8 +837,8 @@ def update_coarse(p, a, e, k, b):
         (a["time"] - e["period"]) / (5 * interval)
     )
     solve_coarse(p, a, b, choose or not math.isfinite(a["solved_time"]))
-    if choose:
-        noise = a["noise_density"]
+    if choose:  # with the usual noise: mirrored axes fit no rotation, which would pass for noise
+        noise = p["coarse_min_noise"] ** 2 * p["coarse_correlation_time"]
         a["mirror"] = mirror_evidence(a, a["hypothesis"], noise / p["coarse_bias_sigma"] ** 2, noise, b)
     return True
 
@@ -1276,11 +1278,11 @@ def observe(p, m, e, r_vs, y, noise):
     y[:] = 0.0
     for i in range(3):
         y[FORCE + i] = turned(r_vs, e["f_s"], i)
-        noise[FORCE + i] = p["filter_accelerometer_noise"] * learnt_noise(p, m, 2)
+        noise[FORCE + i] = p["filter_accelerometer_noise"] * learnt_noise(p, m, FORCES)
     if math.isfinite(e["course"]):
         y[VELOCITY] = e["speed"] * math.sin(e["course"])
         y[VELOCITY + 1] = e["speed"] * math.cos(e["course"])
-        noise[VELOCITY] = noise[VELOCITY + 1] = e["speed_noise"] * learnt_noise(p, m, 0)
+        noise[VELOCITY] = noise[VELOCITY + 1] = e["speed_noise"] * learnt_noise(p, m, VELOCITIES)
     if math.isfinite(e["vertical_speed"]):
         y[VELOCITY + 2] = e["vertical_speed"]
         noise[VELOCITY + 2] = p["filter_vertical_speed_noise"]
@@ -1298,7 +1300,7 @@ def observe(p, m, e, r_vs, y, noise):
         noise[STANDSTILL] = p["filter_standstill_yaw_rate_noise"]
     if math.isfinite(e["altitude"]) and math.isfinite(m["altitude"]):
         y[HEIGHT] = e["altitude"]
-        noise[HEIGHT] = p["filter_altitude_noise"] * learnt_noise(p, m, 1)
+        noise[HEIGHT] = p["filter_altitude_noise"] * learnt_noise(p, m, HEIGHTS)
 
 
 @njit(cache=True, nogil=True)
@@ -1332,11 +1334,11 @@ def update(p, m, e, n):
         if innovation * innovation > p["filter_gate"] ** 2 * total:
             total = innovation * innovation / p["filter_gate"] ** 2
         if VELOCITY <= row < VELOCITY + 2:
-            learn_noise(p, m, 0, (innovation * innovation - variance) / e["speed_noise"] ** 2)
+            learn_noise(p, m, VELOCITIES, (innovation * innovation - variance) / e["speed_noise"] ** 2)
         elif row == HEIGHT:
-            learn_noise(p, m, 1, (innovation * innovation - variance) / p["filter_altitude_noise"] ** 2)
+            learn_noise(p, m, HEIGHTS, (innovation * innovation - variance) / p["filter_altitude_noise"] ** 2)
         elif row < VELOCITY:
-            learn_noise(p, m, 2, (innovation * innovation - variance) / p["filter_accelerometer_noise"] ** 2)
+            learn_noise(p, m, FORCES, (innovation * innovation - variance) / p["filter_accelerometer_noise"] ** 2)
         scale = 1.0 / total
         for i in range(n):
             dx[i] += ph[i] * innovation * scale
@@ -1351,15 +1353,22 @@ def update(p, m, e, n):
 def learn_noise(p, m, which, ratio):
     """Variance of a kind of measurement, relative to the usual: mean square of innovations less what the filter did not
     know (covariance matching); receivers smooth, and phones err more than they say."""
-    if math.isfinite(p["filter_noise_memory"]):
-        ratio = min(max(ratio, -p["filter_max_noise_factor"]), p["filter_max_noise_factor"] ** 2)
-        m["noise_factor"][which] += (ratio - m["noise_factor"][which]) / p["filter_noise_memory"]
+    if not math.isfinite(p["filter_noise_memory"]):
+        return
+    factor = m["noise_factor"]
+    ratio = min(max(ratio, -p["filter_max_noise_factor"]), p["filter_max_noise_factor"] ** 2)
+    factor[which] += (ratio - factor[which]) / p["filter_noise_memory"]
+    if which == VELOCITIES:  # reflections off houses come in bursts
+        factor[LATELY] += (ratio - factor[LATELY]) / p["filter_burst_memory"]
 
 
 @njit(cache=True, nogil=True)
 def learnt_noise(p, m, which):
     """Factor of the standard deviation: never less than the usual."""
-    return math.sqrt(min(max(m["noise_factor"][which], 1.0), p["filter_max_noise_factor"] ** 2))
+    factor = max(m["noise_factor"][which], 1.0)
+    if which == VELOCITIES:
+        factor = max(factor, m["noise_factor"][LATELY])
+    return math.sqrt(min(factor, p["filter_max_noise_factor"] ** 2))
 
 
 @njit(cache=True, nogil=True)
@@ -1509,10 +1518,12 @@ def settle(p, s, m, a, e, sigma):
         s["reliable"] = s["reliable"] or turning
         s["agrees"] = True
         return
-    s["agrees"] = second_opinion(p, m, a) and a["mirror"] < p["fault_mirror_doubt"]
+    s["right_handed"] = a["mirror"] < (p["fault_mirror_doubt"] if s["right_handed"] else p["fault_right_handed"])
+    s["agrees"] = second_opinion(p, m, a)
     informed = max(sigma[0], sigma[1]) < p["settling_start_tilt_sigma"] and sigma[2] < p["settling_start_yaw_sigma"]
     excited = s["forward_excitation"] + s["lateral_excitation"] > p["settling_excitation"]
-    s["reliable"] = informed and excited and s["agrees"]
+    trusted = m["noise_factor"][LATELY] < p["settling_doubt"]
+    s["reliable"] = informed and excited and s["agrees"] and s["right_handed"] and trusted
 
 
 @njit(cache=True, nogil=True)
@@ -1598,7 +1609,7 @@ def drive_error(v, m, q, bias):
 def drive_limit(p, v, m):
     """Largest speed error that passes: t the limit, in square, what the altitude may be wrong by (2 sigma) is added."""
     variance = p["filter_altitude_drift"] * v["elapsed"] + p["filter_altitude_noise"] ** 2
-    height = math.sqrt(variance) * learnt_noise(p, m, 1)
+    height = math.sqrt(variance) * learnt_noise(p, m, HEIGHTS)
     slack = 2 * GRAVITY * height * v["elapsed"] / max(v["distance"], 1e-9)
     return math.sqrt(p["verification_limit"] ** 2 + min(slack, p["verification_limit"]) ** 2)
 
@@ -1645,6 +1656,7 @@ def begin_window(p, g, mekf, s):
     g["state"] = WATCHING
     g["age"] = 0.0
     g["looked"] = 0.0
+    g["excitation"] = 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -1659,6 +1671,7 @@ def suspect(p, g, n, e):
     g["state"] = SUSPICIOUS
     g["age"] = 0.0
     g["looked"] = 0.0
+    g["excitation"] = 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -1707,7 +1720,10 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
     d = np.empty(3)
     distance = look(p, g, n, d)
     keep_evidence(g, e["t"], distance)
+    if n["noise_factor"][LATELY] > p["settling_doubt"]:
+        return False  # the receiver is not to be trusted now
     sure = n["refined"] and largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
+    sure = sure and g["excitation"] > p["change_excitation"]
     if distance < p["change_innocent"]:
         g["innocent_t"] = e["t"]
     if g["state"] == WATCHING:
@@ -1798,11 +1814,14 @@ def write_evidence(evidence, count, g):
 
 
 @njit(cache=True, nogil=True)
-def excite(p, s, e, k):
-    """Sum the squared horizontal acceleration above the noise of the fixes."""
-    noise = (p["filter_speed_noise"] / e["period"]) ** 2
-    s["forward_excitation"] += e["period"] * max(k[0] * k[0] - noise, 0.0)
-    s["lateral_excitation"] += e["period"] * max(k[1] * k[1] - noise, 0.0)
+def excite(p, s, g, e, k):
+    """Sum the squared horizontal acceleration that stands out from the noise of the fixes."""
+    noise = 9 * (p["filter_speed_noise"] / e["period"]) ** 2
+    forward = e["period"] * k[0] * k[0] if k[0] * k[0] > noise else 0.0
+    lateral = e["period"] * k[1] * k[1] if k[1] * k[1] > noise else 0.0
+    s["forward_excitation"] += forward
+    s["lateral_excitation"] += lateral
+    g["excitation"] += forward + lateral
 
 
 @njit(cache=True, nogil=True)
@@ -1837,7 +1856,8 @@ def verify(p, s, v, m, e, sigma, events, count):
         return count
     reason = judge_test(p, s, v, m)
     by_energy = p["verification_by_energy"]
-    if reason == REASON_NONE and by_energy and not (sure(p, sigma) and s["agrees"]):
+    trusted = m["noise_factor"][LATELY] < p["settling_doubt"]
+    if reason == REASON_NONE and by_energy and not (sure(p, sigma) and s["agrees"] and trusted):
         if v["elapsed"] < p["verification_longest"]:
             return count  # more of the same drive makes the test longer and the estimate better
         reason = REASON_UNSURE if s["agrees"] else REASON_SECOND_OPINION
@@ -1943,7 +1963,7 @@ def watch_looseness(p, f, g, t, changed, moved_on, events, evidence, count):
 
 
 @njit(cache=True, nogil=True)
-def align_coarsely(p, c, a, x, s, e, scratch, b):
+def align_coarsely(p, c, a, x, s, g, e, scratch, b):
     """Feed the coarse alignment with the epochs in motion."""
     if not (e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])):
         x["period"] = 0.0
@@ -1951,7 +1971,7 @@ def align_coarsely(p, c, a, x, s, e, scratch, b):
         k = scratch[6][:3]
         kinematics(x, k)
         update_coarse(p, a, x, k, b)
-        excite(p, s, x, k)
+        excite(p, s, g, x, k)
 
 
 @njit(cache=True, nogil=True)
@@ -1959,7 +1979,7 @@ def process_epoch(p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence,
     """All stages in order for one epoch; gives the number of events so far."""
     m, sigma = mekf[0], scratch[7][:3]
     count = find_faults(p, c, a, f, e, events, evidence, count)
-    align_coarsely(p, c, a, x, s, e, scratch, b)
+    align_coarsely(p, c, a, x, s, g, e, scratch, b)
     if not step_filter(p, c, m, a, e, scratch):
         return count
     mounting_sigma(p, m["covariance"], MOUNTING, sigma)

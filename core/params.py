@@ -167,9 +167,11 @@ class FilterParameters:
     """use the course below `moving_speed` too"""
     noise_memory: float = 50.0
     """measurements over which the noise of velocity and altitude is learnt; infinite = it is as given"""
+    burst_memory: float = 8.0
+    """measurements over which a burst of bad velocities shows"""
     start_noise_factor: float = 4.0
     """variance relative to the usual to begin with, so that a poor receiver does no harm before it is known"""
-    max_noise_factor: float = 5.0
+    max_noise_factor: float = 12.0
     """it is never taken to be more than so many times the usual"""
     gate: float = 4.0
     """sigmas; noise of a measurement with a larger innovation is raised until it is this large"""
@@ -195,6 +197,8 @@ class SettlingParameters:
     """rad; confirmed below"""
     excitation: float = 15.0
     """m2/s3, time integral of squared horizontal acceleration needed"""
+    doubt: float = 16.0
+    """variance of the velocity relative to the usual over the last seconds, above which nothing is concluded"""
     second_opinion_sigmas: float = 3.0
     """filter and coarse alignment agree within so many sigmas"""
     second_opinion_angle: float = 4.0 * DEGREE
@@ -237,6 +241,8 @@ class ChangeParameters:
     """a distance below speaks for the confirmed mounting"""
     sure_sigma: float = 3.0 * DEGREE
     """rad; the challenger decides and acquits when its largest sigma is below"""
+    excitation: float = 20.0
+    """m2/s3, squared acceleration the challenger must have seen to decide: a ferry shows hardly any"""
     min_angle: float = 4.0 * DEGREE
     """rad; smaller changes are not reported"""
     reference_angle: float = 2.0 * DEGREE
@@ -249,8 +255,10 @@ class FaultParameters:
 
     mirror: float = 25.0
     """log likelihood ratio at which mirrored axes are reported"""
+    right_handed: float = -4.0
+    """log likelihood ratio below which the axes are taken to be right-handed; before, nothing is confirmed"""
     mirror_doubt: float = 6.0
-    """log likelihood ratio at which nothing is confirmed any more"""
+    """log likelihood ratio at which that is taken back"""
     stuck_time: float = 20.0
     """s of motion in which an axis repeats one value while another moves, until it is reported"""
     stuck_doubt: float = 2.0

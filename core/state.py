@@ -93,7 +93,7 @@ FILTER = np.dtype(
         ("gradient", "f8", (2,)),  # rad/m, change of the road's bank and grade with the distance
         ("bounce", "f8", (2,)),  # rad, roll and pitch of the body on its springs at the end of the epoch
         ("bounce_before", "f8", (2,)),  # rad, at its beginning
-        ("noise_factor", "f8", (3,)),  # variance of velocity, altitude, specific force relative to the usual, learnt
+        ("noise_factor", "f8", (4,)),  # variance of velocity, altitude, specific force, velocity of late relative to the usual, learnt
         ("road_variance", "f8", (2,)),  # rad2, of bank and grade, learnt
         ("q_nv", "f8", (4,)),
         ("q_vs", "f8", (4,)),
@@ -119,6 +119,7 @@ SETTLING = np.dtype(
         ("stable", "?"),
         ("reliable", "?"),
         ("agrees", "?"),  # second opinion
+        ("right_handed", "?"),  # turning has shown that the axes are no mirror image
         ("progress", "f8"),
         ("confirmed", "?"),
         ("mount_t", "f8"),
@@ -156,6 +157,7 @@ CHANGE = np.dtype(
         ("reference", "f8", (4,)),  # q_vs the challenger is compared with
         ("covariance", "f8", (3, 3)),  # rad2, of the reference
         ("age", "f8"),  # s of motion since the challenger began
+        ("excitation", "f8"),  # m2/s3, since the challenger began
         ("looked", "f8"),  # s, age at the last look
         ("innocent_t", "f8"),  # s, last time nothing spoke against the mounting
         ("series", "f4", (LOOKS, 2)),  # s, squared Mahalanobis distance
