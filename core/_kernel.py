@@ -880,8 +880,11 @@ def add_slow_noise(p, m, cov, period, distance):
     cov[ATTITUDE + 2, ATTITUDE + 2] += p["filter_heading_noise"] * period
     cov[ALTITUDE, ALTITUDE] += p["filter_altitude_drift"] * period
     cov[LATENCY, LATENCY] += p["filter_latency_noise"] * period
+    mounting = p["filter_mounting_noise"]
+    if math.isfinite(p["filter_noise_memory"]) and not trusted(p, m):
+        mounting = p["filter_doubt_noise"]
     for i in range(3):
-        cov[MOUNTING + i, MOUNTING + i] += p["filter_mounting_noise"] * period
+        cov[MOUNTING + i, MOUNTING + i] += mounting * period
         cov[BIAS + i, BIAS + i] += p["filter_bias_noise"] * period
         cov[GYRO_BIAS + i, GYRO_BIAS + i] += p["filter_gyro_bias_noise"] * period
     for i in range(2):  # the body sits anew on its springs
@@ -1363,10 +1366,16 @@ def learn_noise(p, m, which, ratio):
 
 
 @njit(cache=True, nogil=True)
+def trusted(p, m):
+    """The receiver does not err much more than usual just now, as it does between houses."""
+    return m["noise_factor"][LATELY] < p["settling_doubt"] * max(m["noise_factor"][VELOCITIES], 1.0)
+
+
+@njit(cache=True, nogil=True)
 def learnt_noise(p, m, which):
     """Factor of the standard deviation: never less than the usual."""
     factor = max(m["noise_factor"][which], 1.0)
-    if which == VELOCITIES:
+    if which == VELOCITIES and not trusted(p, m):
         factor = max(factor, m["noise_factor"][LATELY])
     return math.sqrt(min(factor, p["filter_max_noise_factor"] ** 2))
 
@@ -1522,8 +1531,7 @@ def settle(p, s, m, a, e, sigma):
     s["agrees"] = second_opinion(p, m, a)
     informed = max(sigma[0], sigma[1]) < p["settling_start_tilt_sigma"] and sigma[2] < p["settling_start_yaw_sigma"]
     excited = s["forward_excitation"] + s["lateral_excitation"] > p["settling_excitation"]
-    trusted = m["noise_factor"][LATELY] < p["settling_doubt"]
-    s["reliable"] = informed and excited and s["agrees"] and s["right_handed"] and trusted
+    s["reliable"] = informed and excited and s["agrees"] and s["right_handed"] and trusted(p, m)
 
 
 @njit(cache=True, nogil=True)
@@ -1720,8 +1728,6 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
     d = np.empty(3)
     distance = look(p, g, n, d)
     keep_evidence(g, e["t"], distance)
-    if n["noise_factor"][LATELY] > p["settling_doubt"]:
-        return False  # the receiver is not to be trusted now
     sure = n["refined"] and largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
     sure = sure and g["excitation"] > p["change_excitation"]
     if distance < p["change_innocent"]:
@@ -1734,6 +1740,9 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
         return False
     if (sure and distance < p["change_innocent"]) or g["age"] > 2 * p["change_window"]:
         g["state"] = IDLE
+        return False
+    if not trusted(p, n) and e["moving"] and math.isfinite(e["course"]):
+        suspect(p, g, n, e)  # the receiver errs: what it showed is no evidence
         return False
     difference(n["q_vs"], s["mount_q_vs"], d)
     far = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > p["change_min_angle"] ** 2
@@ -1856,8 +1865,7 @@ def verify(p, s, v, m, e, sigma, events, count):
         return count
     reason = judge_test(p, s, v, m)
     by_energy = p["verification_by_energy"]
-    trusted = m["noise_factor"][LATELY] < p["settling_doubt"]
-    if reason == REASON_NONE and by_energy and not (sure(p, sigma) and s["agrees"] and trusted):
+    if reason == REASON_NONE and by_energy and not (sure(p, sigma) and s["agrees"] and trusted(p, m)):
         if v["elapsed"] < p["verification_longest"]:
             return count  # more of the same drive makes the test longer and the estimate better
         reason = REASON_UNSURE if s["agrees"] else REASON_SECOND_OPINION

@@ -105,6 +105,8 @@ class FilterParameters:
     """rad2/s, random walk of the heading (side slip)"""
     mounting_noise: float = 1e-9
     """rad2/s, random walk of the mounting"""
+    doubt_noise: float = (0.3 * DEGREE) ** 2
+    """rad2/s, the same while the receiver errs much more than usual, so that what it did then wears off"""
     bank_sigma: float = 1.5 * DEGREE
     """rad, stationary standard deviation of the road's bank; roads are level on average"""
     bank_length: float = 50.0
@@ -197,8 +199,8 @@ class SettlingParameters:
     """rad; confirmed below"""
     excitation: float = 15.0
     """m2/s3, time integral of squared horizontal acceleration needed"""
-    doubt: float = 16.0
-    """variance of the velocity relative to the usual over the last seconds, above which nothing is concluded"""
+    doubt: float = 6.0
+    """variance of the velocity over the last seconds, relative to the longer run, above which nothing is concluded"""
     second_opinion_sigmas: float = 3.0
     """filter and coarse alignment agree within so many sigmas"""
     second_opinion_angle: float = 4.0 * DEGREE
