@@ -29,11 +29,11 @@ SATURATION_LEVEL = 14.0
 FLAT_TOP = 2
 """repetitions that make such a rest"""
 
-SPEED, ACCELERATION, YAW_RATE, GRADIENT, ATTITUDE, MOUNTING, BIAS = 0, 1, 2, 3, 5, 8, 11
-LEVER_ARM, ALTITUDE, LATENCY, SUSPENSION, ANTENNA, GYRO_BIAS = 14, 16, 17, 18, 20, 21
-BOUNCE, BOUNCE_BEFORE = 24, 26
+SPEED, ACCELERATION, YAW_RATE, YAW_RATE_BEFORE, GRADIENT, ATTITUDE, MOUNTING, BIAS = 0, 1, 2, 3, 4, 6, 9, 12
+LEVER_ARM, ALTITUDE, LATENCY, SUSPENSION, ANTENNA, GYRO_BIAS = 15, 17, 18, 19, 21, 22
+BOUNCE, BOUNCE_BEFORE = 25, 27
 """First index of each part of the error state; those from GYRO_BIAS on are carried only with a gyroscope."""
-STATES = 28
+STATES = 29
 FORCE, VELOCITY, COURSE_RATE, RATE, STANDSTILL, HEIGHT = 0, 3, 6, 7, 10, 11
 """First row of each measurement: specific force (3), velocity (3), yaw rate from the course, angular rate (3), yaw rate
 at standstill, altitude."""
@@ -932,7 +932,7 @@ def begin_motion(p, m, e):
     m["gradient"][:] = 0.0
     m["bounce"][:] = 0.0
     m["bounce_before"][:] = 0.0
-    m["last_yaw_rate"] = m["last_forward"] = m["last_lateral"] = 0.0
+    m["yaw_rate_before"] = m["last_forward"] = m["last_lateral"] = 0.0
     set_heading(m, e["course"])
     cov = m["covariance"]
     clear_state(cov, 0, MOUNTING)
@@ -1042,7 +1042,6 @@ def road_transition(length, distance, f):
 @njit(cache=True, nogil=True)
 def predict_state(p, m, period, distance, bank, grade):
     """Prediction (4.37)-(4.51): speed, turn about the vertical, road under the vehicle, altitude."""
-    m["last_yaw_rate"] = m["yaw_rate"]
     m["last_forward"] = m["acceleration"]
     m["last_lateral"] = m["speed"] * m["yaw_rate"]
     r = np.empty((3, 3))
@@ -1056,6 +1055,7 @@ def predict_state(p, m, period, distance, bank, grade):
     m["gradient"][1] = grade[1, 0] * pitch + grade[1, 1] * m["gradient"][1]
     m["speed"] += period * m["acceleration"]
     turn(m["q_nv"], 0.0, 0.0, period * m["yaw_rate"])
+    m["yaw_rate_before"] = m["yaw_rate"]
     turn_right(m["q_nv"], roll_step, pitch_step, 0.0)
     m["altitude"] += distance * r[2, 0]
     m["bounce_before"][:] = m["bounce"]
@@ -1063,14 +1063,14 @@ def predict_state(p, m, period, distance, bank, grade):
 
 
 @njit(cache=True, nogil=True)
-def transition_rows(cov, n, period, distance, up, bank, grade):
+def transition_rows(cov, n, period, share, distance, up, bank, grade):
     """F P for the transition F; `up` is the vertical in vehicle axes."""
     for j in range(n):
         cov[ALTITUDE, j] += period * up[0] * cov[SPEED, j] + distance * (
             up[1] * cov[ATTITUDE + 2, j] - up[2] * cov[ATTITUDE + 1, j]
         )
         cov[SPEED, j] += period * cov[ACCELERATION, j]
-        turned = period * cov[YAW_RATE, j]
+        turned = period * ((1 - share) * cov[YAW_RATE, j] + share * cov[YAW_RATE_BEFORE, j])
         x, y = cov[ATTITUDE, j], cov[ATTITUDE + 1, j]
         cx, cy = cov[GRADIENT, j], cov[GRADIENT + 1, j]
         cov[ATTITUDE, j] = bank[0, 0] * x + bank[0, 1] * cx + up[0] * turned
@@ -1078,6 +1078,12 @@ def transition_rows(cov, n, period, distance, up, bank, grade):
         cov[ATTITUDE + 1, j] = grade[0, 0] * y + grade[0, 1] * cy + up[1] * turned
         cov[GRADIENT + 1, j] = grade[1, 0] * y + grade[1, 1] * cy
         cov[ATTITUDE + 2, j] += up[2] * turned
+
+
+@njit(cache=True, nogil=True)
+def remember_rows(cov, n):
+    """Keep what was at the end of the last epoch as what is at the beginning of this one."""
+    cov[YAW_RATE_BEFORE, :] = cov[YAW_RATE, :]
     if n == STATES:
         cov[BOUNCE_BEFORE : BOUNCE_BEFORE + 2, :] = cov[BOUNCE : BOUNCE + 2, :]
         cov[BOUNCE : BOUNCE + 2, :] = 0.0
@@ -1091,11 +1097,14 @@ def predict(p, m, period, n):
     distance = period * m["speed"]
     rotation_matrix(m["q_nv"], r)
     up[:] = r[2, :]
+    remember_rows(cov, n)
+    remember_rows(cov.T, n)
     if p["filter_constant_over_epoch"]:
         add_motion_noise(p, cov, period)
     predict_state(p, m, period, distance, bank, grade)
-    transition_rows(cov, n, period, distance, up, bank, grade)
-    transition_rows(cov.T, n, period, distance, up, bank, grade)
+    share = p["filter_mean_share"]
+    transition_rows(cov, n, period, share, distance, up, bank, grade)
+    transition_rows(cov.T, n, period, share, distance, up, bank, grade)
     if not p["filter_constant_over_epoch"]:
         add_thesis_noise(p, m, cov, period)
     add_slow_noise(p, m, cov, period, distance)
@@ -1111,8 +1120,8 @@ def predict_force(m, period, share, up, force, jacobian):
     Kinematic acceleration of the device by Rivals' formula (seed 004 eq. 4), gravity on the road's slope, and the body
     leaning on its springs. `share` is the part of the epoch between its middle, which the means stand for, and its end.
     """
-    rate, arm = m["yaw_rate"], m["lever_arm"]
-    spin = (rate - m["last_yaw_rate"]) / period
+    arm, gained = m["lever_arm"], m["yaw_rate"] - m["yaw_rate_before"]
+    rate, spin = m["yaw_rate"] - share * gained, gained / period
     speed = m["speed"] - share * period * m["acceleration"]
     curve = m["gradient"][1] if share > 0 else 0.0
     forward = m["acceleration"] - rate * rate * arm[0] - spin * arm[1]
@@ -1129,12 +1138,14 @@ def predict_force(m, period, share, up, force, jacobian):
     d_forward, d_lateral = np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS)
     d_road, d_side, d_stiff = np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS)
     d_forward[ACCELERATION] = 1.0
-    d_forward[YAW_RATE] = -2 * rate * arm[0] - arm[1] / period
+    d_forward[YAW_RATE] = -2 * (1 - share) * rate * arm[0] - arm[1] / period
+    d_forward[YAW_RATE_BEFORE] = -2 * share * rate * arm[0] + arm[1] / period
     d_forward[LEVER_ARM] = -rate * rate
     d_forward[LEVER_ARM + 1] = -spin
     d_lateral[SPEED] = rate
     d_lateral[ACCELERATION] = -share * period * rate
-    d_lateral[YAW_RATE] = speed - 2 * rate * arm[1] + arm[0] / period
+    d_lateral[YAW_RATE] = (1 - share) * (speed - 2 * rate * arm[1]) + arm[0] / period
+    d_lateral[YAW_RATE_BEFORE] = share * (speed - 2 * rate * arm[1]) - arm[0] / period
     d_lateral[LEVER_ARM] = spin
     d_lateral[LEVER_ARM + 1] = -rate * rate
     d_stiff[SPEED] = -2 * speed * curve
@@ -1175,9 +1186,9 @@ def cross_column(u, i):
 
 
 @njit(cache=True, nogil=True)
-def predict_rate(m, period, up, rate, jacobian):
+def predict_rate(m, period, share, up, rate, jacobian):
     """Angular rate in vehicle axes and its Jacobian: turn about the vertical, road and suspension about the level axes."""
-    speed, turning = m["speed"], m["yaw_rate"]
+    speed, turning = m["speed"], m["yaw_rate"] - share * (m["yaw_rate"] - m["yaw_rate_before"])
     dive, lean = m["suspension"][0] / period, m["suspension"][1] / period
     surge = m["acceleration"] - m["last_forward"]
     sway = speed * turning - m["last_lateral"]
@@ -1191,9 +1202,10 @@ def predict_rate(m, period, up, rate, jacobian):
     jacobian[0, SPEED] = m["gradient"][0] + lean * turning
     jacobian[1, SPEED] = m["gradient"][1]
     jacobian[1, ACCELERATION] = -dive
-    jacobian[0, YAW_RATE] = up[0] + lean * speed
-    jacobian[1, YAW_RATE] = up[1]
-    jacobian[2, YAW_RATE] = up[2]
+    for column, part in ((YAW_RATE, 1 - share), (YAW_RATE_BEFORE, share)):
+        jacobian[0, column] = part * (up[0] + lean * speed)
+        jacobian[1, column] = part * up[1]
+        jacobian[2, column] = part * up[2]
     jacobian[0, GRADIENT] = speed
     jacobian[1, GRADIENT + 1] = speed
     jacobian[0, SUSPENSION + 1] = sway / period
@@ -1255,7 +1267,7 @@ def predict_measurements(p, m, e, r_vs, z, h):
     add_mounting(z[FORCE:], h[FORCE:])
     predict_velocity(m, r_nv, z[VELOCITY:], h[VELOCITY:])
     if e["gyro"]:
-        predict_rate(m, e["period"], up, z[RATE:], h[RATE:])
+        predict_rate(m, e["period"], p["filter_mean_share"], up, z[RATE:], h[RATE:])
         add_mounting(z[RATE:], h[RATE:])
     for i in range(3):
         z[FORCE + i] += turned(r_vs, m["bias"], i)
@@ -1399,6 +1411,7 @@ def fold(p, m, dx):
     m["speed"] = max(m["speed"] + dx[SPEED], 0.0)
     m["acceleration"] += dx[ACCELERATION]
     m["yaw_rate"] += dx[YAW_RATE]
+    m["yaw_rate_before"] += dx[YAW_RATE_BEFORE]
     turn_right(m["q_nv"], dx[ATTITUDE], dx[ATTITUDE + 1], dx[ATTITUDE + 2])
     turn(m["q_vs"], dx[MOUNTING], dx[MOUNTING + 1], dx[MOUNTING + 2])
     for i in range(3):

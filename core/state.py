@@ -87,7 +87,7 @@ FILTER = np.dtype(
         ("speed", "f8"),
         ("acceleration", "f8"),
         ("yaw_rate", "f8"),
-        ("last_yaw_rate", "f8"),  # of the epoch before
+        ("yaw_rate_before", "f8"),  # at the beginning of the epoch
         ("last_forward", "f8"),  # m/s2, forward acceleration of the epoch before
         ("last_lateral", "f8"),  # m/s2
         ("gradient", "f8", (2,)),  # rad/m, change of the road's bank and grade with the distance
