@@ -85,7 +85,7 @@ class FilterParameters:
     """s; a filter whose latency differs by more starts again"""
     recover_cost: float = 40.0
     """if, to the second opinion, its own latency is more likely by this much (-2 log likelihood)"""
-    start_inflation: float = 1.5
+    start_inflation: float = 1.3
     """factor of the coarse alignment's sigmas at the start: the filter sees the same road again"""
     acceleration_noise: float = 1.0
     """m2/s5, sigma_a^2, power density of the jerk"""
@@ -145,7 +145,7 @@ class FilterParameters:
     """rad per m/s2, usual lean of the suspension in curves"""
     suspension_sigma: float = 0.2 * DEGREE
     """rad per m/s2, prior of both about the usual"""
-    accelerometer_noise: float = 0.13
+    accelerometer_noise: float = 0.115
     """m/s2, sigma_accl of an epoch's mean specific force"""
     speed_noise: float = 0.16
     """m/s, sigma_GPS,speed per horizontal axis where the receiver does not state it"""
@@ -205,7 +205,7 @@ class SettlingParameters:
     """filter and coarse alignment agree within so many sigmas"""
     second_opinion_angle: float = 4.0 * DEGREE
     """rad; and within this angle"""
-    systematic_sigma: float = 0.15 * DEGREE
+    systematic_sigma: float = 0.1 * DEGREE
     """rad, per axis, added in square to every stated sigma: what the model leaves out (lever arm, suspension)"""
 
 
