@@ -1265,6 +1265,8 @@ def predict_measurements(p, m, e, r_vs, z, h):
     h[:] = 0.0
     predict_force(m, e["period"], p["filter_mean_share"], up, z[FORCE:], h[FORCE:])
     add_mounting(z[FORCE:], h[FORCE:])
+    if z[FORCE] * z[FORCE] + z[FORCE + 1] * z[FORCE + 1] < p["filter_least_acceleration"] ** 2:
+        h[FORCE, MOUNTING + 2] = h[FORCE + 1, MOUNTING + 2] = 0.0
     predict_velocity(m, r_nv, z[VELOCITY:], h[VELOCITY:])
     if e["gyro"]:
         predict_rate(m, e["period"], p["filter_mean_share"], up, z[RATE:], h[RATE:])
@@ -1352,7 +1354,7 @@ def update(p, m, e, n):
             learn_noise(p, m, VELOCITIES, (innovation * innovation - variance) / e["speed_noise"] ** 2)
         elif row == HEIGHT:
             learn_noise(p, m, HEIGHTS, (innovation * innovation - variance) / p["filter_altitude_noise"] ** 2)
-        elif row < VELOCITY:
+        elif row == FORCE + 2:  # upright: driving hides the noise of the others
             learn_noise(p, m, FORCES, (innovation * innovation - variance) / p["filter_accelerometer_noise"] ** 2)
         scale = 1.0 / total
         for i in range(n):

@@ -149,6 +149,9 @@ class FilterParameters:
     """m/s2, sigma_accl of an epoch's mean specific force"""
     speed_noise: float = 0.16
     """m/s, sigma_GPS,speed per horizontal axis where the receiver does not state it"""
+    least_acceleration: float = 0.3
+    """m/s2; less horizontal specific force is not asked for the yaw of the mounting: slow errors of the receiver and the
+    slope of the road look the same"""
     climb_noise: float = math.inf
     """m/s, sigma of the climb rate from differenced altitudes; infinite = not used, the altitude itself is"""
     vertical_speed_noise: float = 0.3
@@ -326,6 +329,7 @@ THESIS = Parameters(
         suspension_sigma=0.0,
         accelerometer_noise=math.sqrt(15.0),
         speed_noise=math.sqrt(0.3),
+        least_acceleration=0.0,
         climb_noise=math.sqrt(0.3),
         vertical_speed_noise=math.sqrt(0.3),
         altitude_noise=math.inf,
