@@ -1479,10 +1479,19 @@ def step_filter(p, c, m, a, e, scratch):
 
 
 @njit(cache=True, nogil=True)
-def mounting_sigma(p, covariance, offset, sigma):
+def noise_ratio(p, a):
+    """How much more than usual the coarse alignment's residual is, at least 1: poor receivers, phones, loose roads.
+
+    It multiplies every stated sigma: what disturbs the one disturbs the other.
+    """
+    return max(a["noise_density"] / (p["coarse_min_noise"] ** 2 * p["coarse_correlation_time"]), 1.0)
+
+
+@njit(cache=True, nogil=True)
+def mounting_sigma(p, covariance, offset, ratio, sigma):
     """1 sigma about the vehicle axes, with what the model leaves out added in square."""
     for i in range(3):
-        sigma[i] = math.sqrt(covariance[offset + i, offset + i] + p["settling_systematic_sigma"] ** 2)
+        sigma[i] = math.sqrt(ratio**2 * covariance[offset + i, offset + i] + p["settling_systematic_sigma"] ** 2)
 
 
 @njit(cache=True, nogil=True)
@@ -1683,9 +1692,12 @@ def begin_window(p, g, mekf, s):
 
 
 @njit(cache=True, nogil=True)
-def suspect(p, g, n, e):
+def suspect(p, g, a, n, e):
     """Let the challenger begin from where it is, knowing nothing else: it may have been turned far, and the filter, whose
-    road and biases have made up for that, is no help."""
+    road and biases have made up for that, is no help. So does the coarse alignment, whose residual says how noisy it is.
+    """
+    clear_sums(a)
+    a["noise_density"] = 0.0
     covariance = np.zeros((3, 3))
     for i in range(3):
         covariance[i, i] = p["change_sigma"] ** 2
@@ -1698,14 +1710,14 @@ def suspect(p, g, n, e):
 
 
 @njit(cache=True, nogil=True)
-def look(p, g, n, d):
+def look(p, g, n, ratio, d):
     """Squared Mahalanobis distance of the challenger's mounting from the reference; `d` is their difference."""
     total = np.empty((3, 3))
     difference(n["q_vs"], g["reference"], d)
     covariance = mounting_covariance(n)
     for i in range(3):
         for j in range(3):
-            total[i, j] = covariance[i, j] + g["covariance"][i, j]
+            total[i, j] = ratio**2 * (covariance[i, j] + g["covariance"][i, j])
         total[i, i] += p["settling_systematic_sigma"] ** 2
     return mahalanobis(d, total)
 
@@ -1731,6 +1743,7 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
     if g["state"] == IDLE:
         if m["running"] and m["aligned"]:
             begin_window(p, g, mekf, s)
+            g["ratio"] = noise_ratio(p, a)
             g["innocent_t"] = e["t"]
         return False
     if not step_filter(p, c, n, a, e, scratch):
@@ -1741,15 +1754,15 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
         return False
     g["looked"] = g["age"]
     d = np.empty(3)
-    distance = look(p, g, n, d)
+    distance = look(p, g, n, g["ratio"] if g["state"] == WATCHING else noise_ratio(p, a), d)
     keep_evidence(g, e["t"], distance)
     sure = n["refined"] and largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
-    sure = sure and g["excitation"] > p["change_excitation"]
+    sure = sure and g["excitation"] > p["change_excitation"] and math.isfinite(a["solved_time"])
     if distance < p["change_innocent"]:
         g["innocent_t"] = e["t"]
     if g["state"] == WATCHING:
         if distance > p["change_suspicion"] and e["moving"] and math.isfinite(e["course"]):
-            suspect(p, g, n, e)
+            suspect(p, g, a, n, e)
         elif g["age"] > p["change_window"] and m["running"] and m["aligned"]:
             begin_window(p, g, mekf, s)
         return False
@@ -1757,7 +1770,7 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
         g["state"] = IDLE
         return False
     if not trusted(p, n) and e["moving"] and math.isfinite(e["course"]):
-        suspect(p, g, n, e)  # the receiver errs: what it showed is no evidence
+        suspect(p, g, a, n, e)  # the receiver errs: what it showed is no evidence
         return False
     difference(n["q_vs"], s["mount_q_vs"], d)
     far = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > p["change_min_angle"] ** 2
@@ -1765,10 +1778,9 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
 
 
 @njit(cache=True, nogil=True)
-def begin_again(a, mekf, s, v, g):
+def begin_again(mekf, s, v, g):
     """After an orientation change: the challenger becomes the filter, everything else starts anew."""
     mekf[0] = mekf[1]
-    clear_sums(a)
     soft_start(s)
     s["confirmed"] = False
     s["suspect"] = True
@@ -1815,10 +1827,10 @@ def write_test(events, count, t, code, v, reason):
 
 
 @njit(cache=True, nogil=True)
-def write_change(p, events, evidence, count, t, n, s, g):
+def write_change(p, a, events, evidence, count, t, n, s, g):
     """Append an orientation change: the new mounting, the turn from the confirmed one, since when, and the evidence."""
     row, sigma = events[count], np.empty(3)
-    mounting_sigma(p, n["covariance"], MOUNTING, sigma)
+    mounting_sigma(p, n["covariance"], MOUNTING, noise_ratio(p, a), sigma)
     write_evidence(evidence, count, g)
     count = write_event(events, count, t, CHANGED, REASON_NONE)
     write_mounting(row, n["q_vs"], sigma)
@@ -2005,7 +2017,7 @@ def process_epoch(p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence,
     align_coarsely(p, c, a, x, s, g, e, scratch, b)
     if not step_filter(p, c, m, a, e, scratch):
         return count
-    mounting_sigma(p, m["covariance"], MOUNTING, sigma)
+    mounting_sigma(p, m["covariance"], MOUNTING, noise_ratio(p, a), sigma)
     settle(p, s, m, a, e, sigma)
     if v["state"] == 1:
         before = count
@@ -2017,9 +2029,9 @@ def process_epoch(p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence,
         return write_test(events, count, e["t"], STARTED, v, REASON_NONE)
     recover_filter(p, m, a, s)
     if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, c, g, mekf, a, s, e, scratch):
-        count = write_change(p, events, evidence, count, e["t"], mekf[1], s, g)
+        count = write_change(p, a, events, evidence, count, e["t"], mekf[1], s, g)
         count = watch_looseness(p, f, g, e["t"], True, False, events, evidence, count)
-        begin_again(a, mekf, s, v, g)
+        begin_again(mekf, s, v, g)
     return count
 
 
@@ -2070,10 +2082,10 @@ def current_estimate(p, a, m, q, sigma):
         sign = -1.0 if m["q_vs"][0] < 0 else 1.0
         for i in range(4):
             q[i] = sign * m["q_vs"][i]
-        mounting_sigma(p, m["covariance"], MOUNTING, sigma)
+        mounting_sigma(p, m["covariance"], MOUNTING, noise_ratio(p, a), sigma)
         return True
     q[:] = a["q_vs"]
-    mounting_sigma(p, a["covariance"], 0, sigma)
+    mounting_sigma(p, a["covariance"], 0, 1.0, sigma)
     return math.isfinite(a["solved_time"]) and largest_sigma(a["covariance"]) < p["coarse_report_sigma"]
 
 

@@ -156,6 +156,7 @@ CHANGE = np.dtype(
         ("state", "i8"),  # 0 idle, 1 watching, 2 suspicious
         ("reference", "f8", (4,)),  # q_vs the challenger is compared with
         ("covariance", "f8", (3, 3)),  # rad2, of the reference
+        ("ratio", "f8"),  # noise ratio when the watch began
         ("age", "f8"),  # s of motion since the challenger began
         ("excitation", "f8"),  # m2/s3, since the challenger began
         ("looked", "f8"),  # s, age at the last look
