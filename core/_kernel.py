@@ -1704,6 +1704,7 @@ def suspect(p, g, a, n, e):
     start_filter(p, n, e, n["q_vs"].copy(), covariance, np.zeros(3), n["latency"])
     n["refined"] = False
     g["state"] = SUSPICIOUS
+    g["guilty"] = 0
     g["age"] = 0.0
     g["looked"] = 0.0
     g["excitation"] = 0.0
@@ -1774,7 +1775,8 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
         return False
     difference(n["q_vs"], s["mount_q_vs"], d)
     far = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > p["change_min_angle"] ** 2
-    return sure and far and distance > p["change_decision"]
+    g["guilty"] = g["guilty"] + 1 if sure and far and distance > p["change_decision"] else 0
+    return g["guilty"] >= p["change_looks"]
 
 
 @njit(cache=True, nogil=True)

@@ -240,8 +240,10 @@ class ChangeParameters:
     """rad, what the challenger begins with, per axis"""
     suspicion: float = 14.0
     """squared Mahalanobis distance (3 degrees of freedom) that makes it begin anew, on new data alone"""
-    decision: float = 24.0
+    decision: float = 32.0
     """the distance that decides then"""
+    looks: int = 4
+    """looks in a row that must show it"""
     innocent: float = 6.0
     """a distance below speaks for the confirmed mounting"""
     sure_sigma: float = 3.0 * DEGREE

@@ -160,6 +160,7 @@ CHANGE = np.dtype(
         ("age", "f8"),  # s of motion since the challenger began
         ("excitation", "f8"),  # m2/s3, since the challenger began
         ("looked", "f8"),  # s, age at the last look
+        ("guilty", "i8"),  # looks in a row that speak against the mounting
         ("innocent_t", "f8"),  # s, last time nothing spoke against the mounting
         ("series", "f4", (LOOKS, 2)),  # s, squared Mahalanobis distance
         ("series_head", "i8"),
