@@ -25,7 +25,7 @@ accelerometer whose errors are known go through `accelerometer.apply` first.
 
 from core import accelerometer, quaternion
 from core.accelerometer import AccelerometerCalibration, CalibrationError
-from core.estimator import NotStillError, advance, begin_session, initial_state, level_start, restart, status
+from core.estimator import advance, begin_session, initial_state, restart, status
 from core.events import (
     Estimate,
     Estimates,
@@ -40,7 +40,8 @@ from core.events import (
     Status,
     Verification,
 )
-from core.params import DEFAULT, PRESETS, THESIS, Parameters
+from core.level import NotStillError, level_start
+from core.params import DEFAULT, PRESETS, THESIS, Parameters, calibrated
 from core.samples import FIX_COLUMNS, SampleError, Samples
 from core.snapshot import SnapshotError, decode, encode
 from core.state import State
@@ -73,6 +74,7 @@ __all__ = [
     "accelerometer",
     "advance",
     "begin_session",
+    "calibrated",
     "decode",
     "encode",
     "initial_state",

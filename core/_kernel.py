@@ -1705,6 +1705,7 @@ def suspect(p, g, a, n, e):
     n["refined"] = False
     g["state"] = SUSPICIOUS
     g["guilty"] = 0
+    g["quiet"] = 0.0
     g["age"] = 0.0
     g["looked"] = 0.0
     g["excitation"] = 0.0
@@ -1770,8 +1771,9 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
     if (sure and distance < p["change_innocent"]) or g["age"] > 2 * p["change_window"]:
         g["state"] = IDLE
         return False
-    if not trusted(p, n) and e["moving"] and math.isfinite(e["course"]):
-        suspect(p, g, a, n, e)  # the receiver errs: what it showed is no evidence
+    misled = not trusted(p, n) or g["quiet"] > p["change_quiet"]
+    if misled and e["moving"] and math.isfinite(e["course"]):
+        suspect(p, g, a, n, e)  # a receiver that errs, or a ferry, shows nothing of the mounting
         return False
     difference(n["q_vs"], s["mount_q_vs"], d)
     far = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > p["change_min_angle"] ** 2
@@ -1859,7 +1861,9 @@ def excite(p, s, g, e, k):
     lateral = e["period"] * k[1] * k[1] if k[1] * k[1] > noise else 0.0
     s["forward_excitation"] += forward
     s["lateral_excitation"] += lateral
-    g["excitation"] += forward + lateral
+    if e["mean_speed"] > p["epoch_reversing_speed"]:  # at walking pace the receiver shows hardly where it goes
+        g["excitation"] += forward + lateral
+    g["quiet"] = 0.0 if forward + lateral > 0 else g["quiet"] + e["period"]
 
 
 @njit(cache=True, nogil=True)
@@ -1977,7 +1981,7 @@ def find_faults(p, c, a, f, e, events, evidence, count):
     long_stuck = stuck > p["fault_stuck_time"]
     saturated = f["saturation"] > p["fault_saturation_time"]
     if math.isfinite(a["solved_time"]):
-        mirrored = a["mirror"] > p["fault_mirror"]
+        mirrored = a["mirror"] > p["fault_mirror"] * noise_ratio(p, a)
         count = report_fault(p, f, LEFT_HANDED, mirrored, np.nan, events, evidence, count)
     count = report_fault(p, f, STUCK_AXIS, long_stuck, e["t"] - stuck, events, evidence, count)
     return report_fault(p, f, SATURATED, saturated, np.nan, events, evidence, count)
@@ -1987,7 +1991,11 @@ def find_faults(p, c, a, f, e, events, evidence, count):
 def watch_looseness(p, f, g, t, changed, moved_on, events, evidence, count):
     """A device whose mounting changes again and again is loose: each change counts, and fades with the hours."""
     if changed or moved_on:
-        faded = f["restlessness"] * math.exp(-(t - f["restless_t"]) / p["fault_loose_memory"]) if t > f["restless_t"] else 0.0
+        faded = (
+            f["restlessness"] * math.exp(-(t - f["restless_t"]) / p["fault_loose_memory"])
+            if t > f["restless_t"]
+            else 0.0
+        )
         f["restlessness"] = faded + (1.0 if changed else p["fault_moved_on_weight"])
         f["restless_t"] = t
     loose = f["restlessness"] > p["fault_loose"]
@@ -2067,13 +2075,15 @@ def current_needs(p, c, a, m, s, sigma, known):
     if not c["t"] - c["motion_t"] < 30.0:
         needs = 4
     wanted = 0.5 * p["settling_excitation"]
-    if not known or sigma[2] > p["settling_yaw_sigma"] or not s["reliable"]:
-        if s["lateral_excitation"] < wanted:
-            needs |= 8
-        if s["forward_excitation"] < wanted:
-            needs |= 16
+    yaw_missing = not known or sigma[2] > p["settling_yaw_sigma"]
+    tilt_missing = not known or max(sigma[0], sigma[1]) > p["settling_tilt_sigma"]
+    unproven = p["settling_reliable_yaw_rate"] == 0 and not s["right_handed"]
+    if s["lateral_excitation"] < wanted and (yaw_missing or tilt_missing or unproven):
+        needs |= 8
+    if s["forward_excitation"] < wanted and yaw_missing:
+        needs |= 16
     if needs == 0:
-        needs = 32
+        needs = 8 if unproven else 32
     return needs
 
 

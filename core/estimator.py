@@ -11,7 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import _kernel
-from core.events import Estimate, Estimates, Event, EventKind, Evidence, Fault, Mount, Needs, Outcome, Stage, Status, Verification
+from core.events import (
+    Estimate,
+    Estimates,
+    Event,
+    EventKind,
+    Evidence,
+    Fault,
+    Mount,
+    Needs,
+    Outcome,
+    Stage,
+    Status,
+    Verification,
+)
 from core.params import Parameters, as_record
 from core.samples import Samples
 from core.state import LOOKS, State, empty_clock, empty_state
@@ -41,16 +54,10 @@ _REASONS = (
     "the estimate moved on while the candidate was tested",
     "the drive did not show the mounting well enough",
 )
-STILL_TIME = 2.0
-"""s without motion after which the vehicle is taken to stand still"""
 _WITH_EVIDENCE = (EventKind.ORIENTATION_CHANGED, EventKind.FAULT)
 _ROW = 14
 _EVENT_ROW = 18
 _EVENTS_PER_FIX = 6
-
-
-class NotStillError(ValueError):
-    """The vehicle is not standing still, as far as the data show; the message is a sentence that says why."""
 
 
 def initial_state(params: Parameters) -> State:
@@ -65,29 +72,14 @@ def begin_session(params: Parameters, state: State) -> State:
     state = state.copy()
     state.filter["aligned"] = False
     state.merged["period"] = 0.0
+    state.change["state"] = 0  # what was suspected before is not known to be of this mounting
+    state.faults["restless_t"] = 0.0
     return state._replace(clock=empty_clock())
 
 
 def restart(params: Parameters, state: State) -> State:
     """Forget everything about the mounting, because the device was refitted; the session goes on."""
     return initial_state(params)._replace(clock=state.clock.copy())
-
-
-def level_start(params: Parameters, state: State) -> State:
-    """Take it that the vehicle stands on level ground now (static start of an inertial sensor).
-
-    Raises
-    ------
-    NotStillError
-        there is no data in this session, or the vehicle was in motion within the last two seconds of it
-    """
-    del params
-    clock = state.clock[0]
-    if math.isnan(clock["t"]):
-        raise NotStillError("The device has sent no data since it was switched on.")
-    if clock["t"] - clock["motion_t"] < STILL_TIME:
-        raise NotStillError(f"The vehicle was moving within the last {STILL_TIME:.0f} seconds of what the device sent.")
-    return state.copy()  # the check alone so far: gravity is not yet taken into the coarse alignment
 
 
 def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, Outcome]:
@@ -206,7 +198,9 @@ def _event(params: Parameters, row: Floats, series: Floats) -> Event:
 def _verification(params: Parameters, state: State) -> Verification:
     record, test = state.verification[0], params.verification
     name = _VERIFICATION_STATES[int(record["state"])]
-    return Verification(name, float(record["elapsed"]), test.duration, float(record["error"]), float(record["limit"]) or test.limit)
+    return Verification(
+        name, float(record["elapsed"]), test.duration, float(record["error"]), float(record["limit"]) or test.limit
+    )
 
 
 def _mount(params: Parameters, state: State) -> Mount | None:
@@ -217,6 +211,8 @@ def _mount(params: Parameters, state: State) -> Mount | None:
         t=float(record["mount_t"]),
         quaternion=record["mount_q_vs"].copy(),
         sigma=record["mount_sigma"].copy(),
-        verification=Verification("passed", test.duration, test.duration, float(record["mount_error"]), float(record["mount_limit"])),
+        verification=Verification(
+            "passed", test.duration, test.duration, float(record["mount_error"]), float(record["mount_limit"])
+        ),
         suspect=bool(record["suspect"]),
     )

@@ -5,7 +5,7 @@ prior takes a state out of the filter: the `thesis` preset is the 9-state filter
 """
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +65,8 @@ class CoarseParameters:
     """s; epochs are merged until they are this long"""
     min_time: float = 10.0
     """s of motion before the first solution"""
+    level_sigma: float = 0.6 * DEGREE
+    """rad; ground that an installer calls level is so, in roll and in pitch"""
     report_sigma: float = 20 * DEGREE
     """rad; a solution is reported as an estimate when the largest sigma is below"""
 
@@ -249,7 +251,9 @@ class ChangeParameters:
     sure_sigma: float = 3.0 * DEGREE
     """rad; the challenger decides and acquits when its largest sigma is below"""
     excitation: float = 20.0
-    """m2/s3, squared acceleration the challenger must have seen to decide: a ferry shows hardly any"""
+    """m2/s3, squared acceleration the challenger must have seen to decide"""
+    quiet: float = 60.0
+    """s of motion without acceleration after which a suspicious challenger begins anew: this may be a ferry"""
     min_angle: float = 4.0 * DEGREE
     """rad; smaller changes are not reported"""
     reference_angle: float = 2.0 * DEGREE
@@ -350,6 +354,19 @@ THESIS = Parameters(
     change=ChangeParameters(min_angle=15 * DEGREE, window=math.inf),
 )
 """Table 5.1 (variances at T = 0.25 s), n = 100, 40 s and 2.5 m/s, RELIABLE by yaw rate (thesis 5.2-5.4)."""
+
+
+def calibrated(params: Parameters) -> Parameters:
+    """Give the parameters for a device whose accelerometer was calibrated: the bias is known much better."""
+    if params.filter.bias_sigma == 0:  # no such state
+        return params
+    sigma = 5 * MILLI_G
+    return replace(
+        params,
+        coarse=replace(params.coarse, bias_sigma=sigma),
+        filter=replace(params.filter, bias_sigma=sigma),
+    )
+
 
 PRESETS = {"default": DEFAULT, "thesis": THESIS}
 

@@ -1,7 +1,7 @@
 """State <-> versioned bytes.
 
 Layout: magic, format version, a fingerprint of the record layout, then the bytes of each part in order, little-endian
-doubles as they are in memory. A state that was saved and loaded goes on bit for bit like one that never was.
+doubles as they are in memory, of covariances of the filters one triangle (the kernel keeps them exactly symmetric). A state that was saved and loaded goes on bit for bit like one that never was.
 """
 
 import hashlib
@@ -9,14 +9,31 @@ import struct
 import sys
 
 import numpy as np
+from numpy.typing import NDArray
 
-from core.state import LAYOUT, State
+from core._kernel import STATES
+from core.state import FILTER, LAYOUT, State, empty_state
 
 MAGIC = b"LVLA"
-VERSION = 1
+VERSION = 2
 _HEADER = struct.Struct("<4sH8s")
-_FINGERPRINT = hashlib.sha256("|".join(str(part.descr) for part in LAYOUT).encode()).digest()[:8]  # type: ignore[attr-defined]
-SIZE = _HEADER.size + sum(part.itemsize for part in LAYOUT)
+_ROWS, _COLUMNS = np.tril_indices(STATES)
+
+
+def _packed(dtype: np.dtype[np.void]) -> np.dtype[np.void]:
+    """Layout of a part as it is stored."""
+    if dtype != FILTER:
+        return dtype
+    descr = [
+        (name, "<f8", (_ROWS.size,)) if name == "covariance" else (name, dtype[name]) for name in dtype.names or ()
+    ]
+    return np.dtype(descr)
+
+
+_STORED = tuple(_packed(np.dtype(part)) for part in LAYOUT)
+_COUNTS = tuple(part.shape[0] for part in empty_state())
+_FINGERPRINT = hashlib.sha256("|".join(str(dtype.descr) for dtype in _STORED).encode()).digest()[:8]
+SIZE = _HEADER.size + sum(dtype.itemsize * count for dtype, count in zip(_STORED, _COUNTS, strict=True))
 
 
 class SnapshotError(ValueError):
@@ -25,7 +42,8 @@ class SnapshotError(ValueError):
 
 def encode(state: State) -> bytes:
     """Give the state as `SIZE` bytes (less than 16 kB)."""
-    return _HEADER.pack(MAGIC, VERSION, _FINGERPRINT) + b"".join(part.tobytes() for part in state)
+    parts = zip(state, _STORED, strict=True)
+    return _HEADER.pack(MAGIC, VERSION, _FINGERPRINT) + b"".join(_pack(part, dtype).tobytes() for part, dtype in parts)
 
 
 def decode(data: bytes) -> State:
@@ -46,7 +64,29 @@ def decode(data: bytes) -> State:
     if len(data) != SIZE:
         raise SnapshotError(f"snapshot has {len(data)} bytes, expected {SIZE}")
     offset, parts = _HEADER.size, []
-    for dtype in LAYOUT:
-        parts.append(np.frombuffer(data, dtype, count=1, offset=offset).copy())
-        offset += dtype.itemsize
+    for layout, dtype, count in zip(LAYOUT, _STORED, _COUNTS, strict=True):
+        parts.append(_unpack(np.frombuffer(data, dtype, count, offset), np.dtype(layout)))
+        offset += dtype.itemsize * count
     return State(*parts)
+
+
+def _pack(part: NDArray[np.void], dtype: np.dtype[np.void]) -> NDArray[np.void]:
+    if part.dtype == dtype:
+        return part
+    packed = np.zeros(part.shape, dtype)
+    for name in dtype.names or ():
+        packed[name] = part[name][:, _ROWS, _COLUMNS] if name == "covariance" else part[name]
+    return packed
+
+
+def _unpack(packed: NDArray[np.void], dtype: np.dtype[np.void]) -> NDArray[np.void]:
+    if packed.dtype == dtype:
+        return packed.copy()
+    part = np.zeros(packed.shape, dtype)
+    for name in dtype.names or ():
+        if name == "covariance":
+            part[name][:, _ROWS, _COLUMNS] = packed[name]
+            part[name][:, _COLUMNS, _ROWS] = packed[name]
+        else:
+            part[name] = packed[name]
+    return part

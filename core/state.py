@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from core._kernel import MERGED, STATES
 
-RING = 52
+RING = 50
 """points of the integrated IMU signal kept, 0.1 s or one sample apart: the longest epoch plus the longest latency"""
 AVERAGE_EPOCHS = 100
 """n of the moving average (thesis 5.3)"""
@@ -93,7 +93,11 @@ FILTER = np.dtype(
         ("gradient", "f8", (2,)),  # rad/m, change of the road's bank and grade with the distance
         ("bounce", "f8", (2,)),  # rad, roll and pitch of the body on its springs at the end of the epoch
         ("bounce_before", "f8", (2,)),  # rad, at its beginning
-        ("noise_factor", "f8", (4,)),  # variance of velocity, altitude, specific force, velocity of late relative to the usual, learnt
+        (
+            "noise_factor",
+            "f8",
+            (4,),
+        ),  # variance of velocity, altitude, specific force, velocity of late relative to the usual, learnt
         ("road_variance", "f8", (2,)),  # rad2, of bank and grade, learnt
         ("q_nv", "f8", (4,)),
         ("q_vs", "f8", (4,)),
@@ -160,6 +164,7 @@ CHANGE = np.dtype(
         ("age", "f8"),  # s of motion since the challenger began
         ("excitation", "f8"),  # m2/s3, since the challenger began
         ("looked", "f8"),  # s, age at the last look
+        ("quiet", "f8"),  # s of motion without acceleration
         ("guilty", "i8"),  # looks in a row that speak against the mounting
         ("innocent_t", "f8"),  # s, last time nothing spoke against the mounting
         ("series", "f4", (LOOKS, 2)),  # s, squared Mahalanobis distance

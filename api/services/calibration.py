@@ -113,7 +113,8 @@ class Calibration:
             return session, None
         t_last = last_time(reading.samples)
         try:
-            state, outcome = core.advance(self.context.params, self.state, self._corrected(reading.samples))
+            params, samples = self._corrected(reading.samples)
+            state, outcome = core.advance(params, self.state, samples)
         except core.SampleError as error:
             raise UnusableError(str(error)) from error
         self._state = state
@@ -122,13 +123,15 @@ class Calibration:
         self._record(session, outcome, t_last, received_at)
         return session, outcome
 
-    def _corrected(self, samples: core.Samples) -> core.Samples:
-        """Take the accelerometer's errors off, where they are known."""
+    def _corrected(self, samples: core.Samples) -> tuple[core.Parameters, core.Samples]:
+        """Take the accelerometer's errors off, where they are known; what is left of the bias then is small."""
+        params = self.context.params
         known = devices.accelerometer_calibration(self.tx, self.row.device_pk)
         if known is None:
-            return samples
+            return params, samples
         calibration = core.AccelerometerCalibration(np.array(known["gain"]), np.array(known["offset"]))
-        return replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))
+        corrected = replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))
+        return core.calibrated(params), corrected
 
     def _record(self, session: Session, outcome: core.Outcome, t_last: float, received_at: datetime) -> None:
         """Keep what a chunk brought: history, mountings, alerts, status."""
