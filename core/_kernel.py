@@ -47,6 +47,8 @@ DUPLICATE_TIME, BEFORE_PREVIOUS, FIX_WITHOUT_VELOCITY, FIX_IMPLAUSIBLE = range(4
 NO_EPOCH, BROKEN, COMPLETE = range(3)
 """What a fix makes of the epoch before it."""
 
+NOT_STARTED, STARTED_NOW, CARRY_ON = range(3)
+"""What may be done with the filter in an epoch."""
 IDLE, WATCHING, SUSPICIOUS = range(3)
 """States of the watch for an orientation change."""
 MOST_EVIDENCE = 1e6
@@ -233,6 +235,7 @@ def integrate(p, c, t, f_s, w_s, first, stop, counts):
     while i < stop:
         time = t[i]
         if time <= now:
+            c["samples"] -= 1
             counts[DUPLICATE_TIME if time == now else BEFORE_PREVIOUS] += 1
             i += 1
             continue
@@ -318,7 +321,7 @@ def mean_signals(c, start, end, delay, f_s, w_s, scratch):
     The end is now; for no delay the integral at the fix that began the epoch is known exactly.
     """
     begin, stop = scratch[0], scratch[1]
-    if delay == 0.0 and start == c["fix_t"]:
+    if delay == 0.0 and abs(start - c["fix_t"]) < 1e-9:
         begin[:7] = c["fix_integral"]
         stop[:7] = c["integral"]
     elif not (integral_at(c, start - delay, begin) and integral_at(c, end - delay, stop)):
@@ -914,6 +917,32 @@ def set_heading(m, course):
 
 
 @njit(cache=True, nogil=True)
+def turn_rows(rows, t):
+    """Turn three rows by a rotation."""
+    for j in range(rows.shape[1]):
+        x, y, z = rows[0, j], rows[1, j], rows[2, j]
+        for i in range(3):
+            rows[i, j] = t[i, 0] * x + t[i, 1] * y + t[i, 2] * z
+
+
+@njit(cache=True, nogil=True)
+def keep_level_covariance(m, before):
+    """After a change of the attitude: its covariance stays what it is in the level frame, so it turns in the vehicle's."""
+    after, t = np.empty((3, 3)), np.zeros((3, 3))
+    rotation_matrix(m["q_nv"], after)
+    for i in range(3):
+        for j in range(3):
+            for k in range(3):
+                t[i, j] += after[k, i] * before[k, j]
+    cov = m["covariance"]
+    turn_rows(cov[ATTITUDE : ATTITUDE + 3, :], t)
+    turn_rows(cov[:, ATTITUDE : ATTITUDE + 3].T, t)
+    for i in range(cov.shape[0]):
+        for j in range(i):
+            cov[j, i] = cov[i, j]
+
+
+@njit(cache=True, nogil=True)
 def clear_state(cov, first, last):
     """Take the uncertainty of the states [first, last) and their correlation with all others out."""
     for i in range(first, last):
@@ -999,8 +1028,10 @@ def mounting_covariance(m):
 
 @njit(cache=True, nogil=True)
 def refine(p, m, a, e):
-    """Start once more when the mounting is known well enough: what was learnt about lever arm, suspension and biases
-    while it was far off rests on wrong axes."""
+    """Start once more when the mounting is known well enough.
+
+    What was learnt about lever arm, suspension and biases while it was far off rests on wrong axes.
+    """
     covariance = mounting_covariance(m)
     if m["refined"] or largest_sigma(covariance) > p["filter_refine_sigma"] or not math.isfinite(e["course"]):
         return
@@ -1114,7 +1145,7 @@ def predict(p, m, period, n):
 
 
 @njit(cache=True, nogil=True)
-def predict_force(m, period, share, up, force, jacobian):
+def predict_force(m, period, share, exact, up, force, jacobian):
     """Specific force in vehicle axes and its Jacobian.
 
     Kinematic acceleration of the device by Rivals' formula (seed 004 eq. 4), gravity on the road's slope, and the body
@@ -1123,13 +1154,14 @@ def predict_force(m, period, share, up, force, jacobian):
     arm, gained = m["lever_arm"], m["yaw_rate"] - m["yaw_rate_before"]
     rate, spin = m["yaw_rate"] - share * gained, gained / period
     speed = m["speed"] - share * period * m["acceleration"]
-    curve = m["gradient"][1] if share > 0 else 0.0
+    curve = m["gradient"][1] if exact else 0.0
+    left_y, left_z = (up[2], -up[1]) if exact else (1.0, 0.0)  # the vehicle turns about the vertical
     forward = m["acceleration"] - rate * rate * arm[0] - spin * arm[1]
     lateral = speed * rate + spin * arm[0] - rate * rate * arm[1]
     dive, lean = m["suspension"][0], m["suspension"][1]
     road = forward + GRAVITY * up[0]
-    side = lateral * up[2] + GRAVITY * up[1]
-    stiff = GRAVITY * up[2] - lateral * up[1] - speed * speed * curve
+    side = lateral * left_y + GRAVITY * up[1]
+    stiff = GRAVITY * up[2] + lateral * left_z - speed * speed * curve
     rolled = 0.5 * (m["bounce"][0] + m["bounce_before"][0])
     pitched = 0.5 * (m["bounce"][1] + m["bounce_before"][1])
     force[0] = road + stiff * dive * forward - GRAVITY * pitched
@@ -1150,18 +1182,18 @@ def predict_force(m, period, share, up, force, jacobian):
     d_lateral[LEVER_ARM + 1] = -rate * rate
     d_stiff[SPEED] = -2 * speed * curve
     d_stiff[ACCELERATION] = 2 * speed * curve * share * period
-    d_stiff[GRADIENT + 1] = -speed * speed if share > 0 else 0.0
+    d_stiff[GRADIENT + 1] = -speed * speed if exact else 0.0
     for i in range(3):  # d up = [up x] alpha
         x, y, z = cross_column(up, i)
         d_road[ATTITUDE + i] = GRAVITY * x
-        d_side[ATTITUDE + i] = GRAVITY * y + lateral * z
-        d_stiff[ATTITUDE + i] = GRAVITY * z - lateral * y
+        d_side[ATTITUDE + i] = GRAVITY * y + (lateral * z if exact else 0.0)
+        d_stiff[ATTITUDE + i] = GRAVITY * z - (lateral * y if exact else 0.0)
     jacobian[0, BOUNCE + 1] = jacobian[0, BOUNCE_BEFORE + 1] = -0.5 * GRAVITY
     jacobian[1, BOUNCE] = jacobian[1, BOUNCE_BEFORE] = 0.5 * GRAVITY
     for j in range(GYRO_BIAS):
         d_road[j] += d_forward[j]
-        d_side[j] += up[2] * d_lateral[j]
-        d_stiff[j] -= up[1] * d_lateral[j]
+        d_side[j] += left_y * d_lateral[j]
+        d_stiff[j] += left_z * d_lateral[j]
         jacobian[0, j] = d_road[j] + dive * (stiff * d_forward[j] + forward * d_stiff[j])
         jacobian[1, j] = d_side[j] + lean * (stiff * d_lateral[j] + lateral * d_stiff[j])
         jacobian[2, j] = (
@@ -1187,7 +1219,7 @@ def cross_column(u, i):
 
 @njit(cache=True, nogil=True)
 def predict_rate(m, period, share, up, rate, jacobian):
-    """Angular rate in vehicle axes and its Jacobian: turn about the vertical, road and suspension about the level axes."""
+    """Angular rate in vehicle axes and its Jacobian: the vehicle turns, the road tilts it, it leans on its springs."""
     speed, turning = m["speed"], m["yaw_rate"] - share * (m["yaw_rate"] - m["yaw_rate_before"])
     dive, lean = m["suspension"][0] / period, m["suspension"][1] / period
     surge = m["acceleration"] - m["last_forward"]
@@ -1254,16 +1286,16 @@ def predict_velocity(m, r_nv, z, h):
 
 @njit(cache=True, nogil=True)
 def predict_measurements(p, m, e, r_vs, z, h):
-    """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate, altitude.
+    """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate, height.
 
-    What the sensor reads is turned into the axes of the vehicle, as far as they are known, and predicted there: all that
+    What the sensor reads is turned into the axes of the vehicle, as far as they are known, and predicted there: what
     the update does to a component (gate, learnt noise) then turns with the log.
     """
     r_nv = np.empty((3, 3))
     rotation_matrix(m["q_nv"], r_nv)
     up = r_nv[2]
     h[:] = 0.0
-    predict_force(m, e["period"], p["filter_mean_share"], up, z[FORCE:], h[FORCE:])
+    predict_force(m, e["period"], p["filter_mean_share"], p["filter_exact_kinematics"], up, z[FORCE:], h[FORCE:])
     add_mounting(z[FORCE:], h[FORCE:])
     if z[FORCE] * z[FORCE] + z[FORCE + 1] * z[FORCE + 1] < p["filter_least_acceleration"] ** 2:
         h[FORCE, MOUNTING + 2] = h[FORCE + 1, MOUNTING + 2] = 0.0
@@ -1368,8 +1400,10 @@ def update(p, m, e, n):
 
 @njit(cache=True, nogil=True)
 def learn_noise(p, m, which, ratio):
-    """Variance of a kind of measurement, relative to the usual: mean square of innovations less what the filter did not
-    know (covariance matching); receivers smooth, and phones err more than they say."""
+    """Variance of a kind of measurement relative to the usual: receivers smooth, and phones err more than they say.
+
+    Mean square of the innovations less what the filter did not know (covariance matching).
+    """
     if not math.isfinite(p["filter_noise_memory"]):
         return
     factor = m["noise_factor"]
@@ -1414,7 +1448,11 @@ def fold(p, m, dx):
     m["acceleration"] += dx[ACCELERATION]
     m["yaw_rate"] += dx[YAW_RATE]
     m["yaw_rate_before"] += dx[YAW_RATE_BEFORE]
+    before = np.empty((3, 3))
+    rotation_matrix(m["q_nv"], before)
     turn_right(m["q_nv"], dx[ATTITUDE], dx[ATTITUDE + 1], dx[ATTITUDE + 2])
+    if p["filter_level_errors"]:
+        keep_level_covariance(m, before)
     turn(m["q_vs"], dx[MOUNTING], dx[MOUNTING + 1], dx[MOUNTING + 2])
     for i in range(3):
         m["bias"][i] += dx[BIAS + i]
@@ -1432,35 +1470,43 @@ def fold(p, m, dx):
 
 
 @njit(cache=True, nogil=True)
+def start_where_possible(p, m, a, e):
+    """Start the filter or its motion where it is not running; CARRY_ON when there is a step to make."""
+    heading_known = e["moving"] and math.isfinite(e["course"])
+    if not p["filter_start_from_coarse"]:
+        if not m["running"]:
+            start_at_identity(p, m)
+        if not m["aligned"] and heading_known:
+            before = np.empty((3, 3))
+            rotation_matrix(m["q_nv"], before)
+            set_heading(m, e["course"])
+            keep_level_covariance(m, before)
+            m["aligned"] = True
+        return CARRY_ON
+    if m["running"] and m["aligned"]:
+        return CARRY_ON
+    if not heading_known:
+        return NOT_STARTED
+    if m["running"]:
+        begin_motion(p, m, e)
+        return STARTED_NOW
+    sigma = largest_sigma(a["covariance"])
+    if not math.isfinite(a["solved_time"]) or sigma > p["filter_start_sigma"]:
+        return NOT_STARTED
+    start_filter(p, m, e, a["q_vs"], a["covariance"], a["bias"], a["latency"])
+    m["refined"] = sigma < p["filter_refine_sigma"]
+    return STARTED_NOW
+
+
+@njit(cache=True, nogil=True)
 def step_filter(p, c, m, a, e, scratch):
     """One epoch: start where it can be started, else predict and update; True when the filter made a step."""
     if not e["usable"]:
         m["aligned"] = False
         return False
-    heading_known = e["moving"] and math.isfinite(e["course"])
-    if not m["running"]:
-        if not p["filter_start_from_coarse"]:
-            start_at_identity(p, m)
-        elif (
-            heading_known
-            and math.isfinite(a["solved_time"])
-            and largest_sigma(a["covariance"]) < p["filter_start_sigma"]
-        ):
-            start_filter(p, m, e, a["q_vs"], a["covariance"], a["bias"], a["latency"])
-            m["refined"] = largest_sigma(a["covariance"]) < p["filter_refine_sigma"]
-            return True
-        else:
-            return False
-    if not m["aligned"]:
-        if not p["filter_start_from_coarse"]:
-            if heading_known:
-                set_heading(m, e["course"])
-                m["aligned"] = True
-        elif heading_known:
-            begin_motion(p, m, e)
-            return True
-        else:
-            return False
+    start = start_where_possible(p, m, a, e)
+    if start != CARRY_ON:
+        return start == STARTED_NOW
     if not delayed_signals(p, c, m["latency"], e, scratch):
         m["aligned"] = False
         return False
@@ -1693,8 +1739,10 @@ def begin_window(p, g, mekf, s):
 
 @njit(cache=True, nogil=True)
 def suspect(p, g, a, n, e):
-    """Let the challenger begin from where it is, knowing nothing else: it may have been turned far, and the filter, whose
-    road and biases have made up for that, is no help. So does the coarse alignment, whose residual says how noisy it is.
+    """Let the challenger begin from where it is, knowing nothing else.
+
+    The device may have been turned far, and the filter, whose road and biases have made up for that, is no help. The
+    coarse alignment begins anew too: its residual says how noisy the data are.
     """
     clear_sums(a)
     a["noise_density"] = 0.0
@@ -1712,9 +1760,9 @@ def suspect(p, g, a, n, e):
 
 
 @njit(cache=True, nogil=True)
-def look(p, g, n, ratio, d):
-    """Squared Mahalanobis distance of the challenger's mounting from the reference; `d` is their difference."""
-    total = np.empty((3, 3))
+def look(p, g, n, ratio):
+    """Squared Mahalanobis distance of the challenger's mounting from the reference."""
+    d, total = np.empty(3), np.empty((3, 3))
     difference(n["q_vs"], g["reference"], d)
     covariance = mounting_covariance(n)
     for i in range(3):
@@ -1735,6 +1783,25 @@ def keep_evidence(g, t, distance):
 
 
 @njit(cache=True, nogil=True)
+def judge(p, g, a, n, s, e, distance):
+    """Let a suspicious challenger decide, acquit, or begin anew; True when it has decided."""
+    sure = n["refined"] and largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
+    sure = sure and g["excitation"] > p["change_excitation"] and math.isfinite(a["solved_time"])
+    misled = not trusted(p, n) or g["quiet"] > p["change_quiet"]
+    if (sure and distance < p["change_innocent"]) or g["age"] > 2 * p["change_window"]:
+        g["state"] = IDLE
+    elif misled and e["moving"] and math.isfinite(e["course"]):
+        suspect(p, g, a, n, e)  # a receiver that errs, or a ferry, shows nothing of the mounting
+    else:
+        d = np.empty(3)
+        difference(n["q_vs"], s["mount_q_vs"], d)
+        far = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > p["change_min_angle"] ** 2
+        g["guilty"] = g["guilty"] + 1 if sure and far and distance > p["change_decision"] else 0
+        return g["guilty"] >= p["change_looks"]
+    return False
+
+
+@njit(cache=True, nogil=True)
 def watch_for_change(p, c, g, mekf, a, s, e, scratch):
     """Sequential test of the confirmed mounting by a challenger; True when the device has moved.
 
@@ -1742,43 +1809,30 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
     once: SUSPICIOUS, it rests on data from after the suspicion alone, and decides, or acquits.
     """
     m, n = mekf[0], mekf[1]
-    if g["state"] == IDLE:
-        if m["running"] and m["aligned"]:
-            begin_window(p, g, mekf, s)
-            g["ratio"] = noise_ratio(p, a)
-            g["innocent_t"] = e["t"]
+    ready = m["running"] and m["aligned"]
+    if g["state"] == IDLE and ready:
+        begin_window(p, g, mekf, s)
+        g["ratio"] = noise_ratio(p, a)
+        g["innocent_t"] = e["t"]
         return False
-    if not step_filter(p, c, n, a, e, scratch):
+    if g["state"] == IDLE or not step_filter(p, c, n, a, e, scratch):
         return False
     if e["moving"]:
         g["age"] += e["period"]
     if g["age"] - g["looked"] < p["change_interval"]:
         return False
     g["looked"] = g["age"]
-    d = np.empty(3)
-    distance = look(p, g, n, g["ratio"] if g["state"] == WATCHING else noise_ratio(p, a), d)
+    distance = look(p, g, n, g["ratio"] if g["state"] == WATCHING else noise_ratio(p, a))
     keep_evidence(g, e["t"], distance)
-    sure = n["refined"] and largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
-    sure = sure and g["excitation"] > p["change_excitation"] and math.isfinite(a["solved_time"])
     if distance < p["change_innocent"]:
         g["innocent_t"] = e["t"]
-    if g["state"] == WATCHING:
-        if distance > p["change_suspicion"] and e["moving"] and math.isfinite(e["course"]):
-            suspect(p, g, a, n, e)
-        elif g["age"] > p["change_window"] and m["running"] and m["aligned"]:
-            begin_window(p, g, mekf, s)
-        return False
-    if (sure and distance < p["change_innocent"]) or g["age"] > 2 * p["change_window"]:
-        g["state"] = IDLE
-        return False
-    misled = not trusted(p, n) or g["quiet"] > p["change_quiet"]
-    if misled and e["moving"] and math.isfinite(e["course"]):
-        suspect(p, g, a, n, e)  # a receiver that errs, or a ferry, shows nothing of the mounting
-        return False
-    difference(n["q_vs"], s["mount_q_vs"], d)
-    far = d[0] ** 2 + d[1] ** 2 + d[2] ** 2 > p["change_min_angle"] ** 2
-    g["guilty"] = g["guilty"] + 1 if sure and far and distance > p["change_decision"] else 0
-    return g["guilty"] >= p["change_looks"]
+    if g["state"] == SUSPICIOUS:
+        return judge(p, g, a, n, s, e, distance)
+    if distance > p["change_suspicion"] and e["moving"] and math.isfinite(e["course"]):
+        suspect(p, g, a, n, e)
+    elif g["age"] > p["change_window"] and ready:
+        begin_window(p, g, mekf, s)
+    return False
 
 
 @njit(cache=True, nogil=True)

@@ -95,6 +95,11 @@ class FilterParameters:
     """acceleration and yaw rate are means of an epoch and change between epochs; False: Wiener process (4.67)"""
     mean_share: float = 0.5
     """share of an epoch between the middle, which its mean signals stand for, and its end; 0 in the thesis"""
+    exact_kinematics: bool = True
+    """turns about the vertical and the road's curvature in the specific force; False: (4.55) as printed"""
+    level_errors: bool = False
+    """errors of the vehicle's attitude are defined in the level frame (4.24); False: in the vehicle's axes, where a
+    turn of the vehicle does not mix what was learnt about roll and pitch with what was not"""
     yaw_rate_noise: float = 0.02
     """rad2/s3, random walk of the yaw rate"""
     yaw_rate_noise_per_speed: float = 0.0
@@ -152,8 +157,7 @@ class FilterParameters:
     speed_noise: float = 0.16
     """m/s, sigma_GPS,speed per horizontal axis where the receiver does not state it"""
     least_acceleration: float = 0.3
-    """m/s2; less horizontal specific force is not asked for the yaw of the mounting: slow errors of the receiver and the
-    slope of the road look the same"""
+    """m/s2; less horizontal specific force is not asked for yaw: a slow error of the receiver looks the same"""
     climb_noise: float = math.inf
     """m/s, sigma of the climb rate from differenced altitudes; infinite = not used, the altitude itself is"""
     vertical_speed_noise: float = 0.3
@@ -310,6 +314,8 @@ THESIS = Parameters(
         acceleration_noise=10.0,
         constant_over_epoch=False,
         mean_share=0.0,
+        exact_kinematics=False,
+        level_errors=True,
         yaw_rate_noise=0.0,
         yaw_rate_noise_per_speed=5e-3,
         attitude_noise_per_yaw_rate=1e-4,

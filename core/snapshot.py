@@ -1,7 +1,8 @@
 """State <-> versioned bytes.
 
 Layout: magic, format version, a fingerprint of the record layout, then the bytes of each part in order, little-endian
-doubles as they are in memory, of covariances of the filters one triangle (the kernel keeps them exactly symmetric). A state that was saved and loaded goes on bit for bit like one that never was.
+doubles as they are in memory; of the filters' covariances, which the kernel keeps exactly symmetric, one triangle.
+A state that was saved and loaded goes on bit for bit like one that never was.
 """
 
 import hashlib

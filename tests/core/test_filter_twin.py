@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from core import THESIS, Samples, advance, initial_state
-from core._kernel import GRAVITY
+from core._kernel import ATTITUDE, BIAS, GRAVITY, MOUNTING
 from core.quaternion import matrix
 from core.simulation import Scenario, simulate
 
@@ -75,7 +75,8 @@ class Twin:
         angle = -w_z * period  # about z, which points down
         f = np.eye(9)
         f[0, 1] = period
-        f[3:5, 3:5] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+        turn = 2 * np.arctan(angle / 2)  # what the Rodrigues vector of (4.26) turns by
+        f[3:5, 3:5] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
         f[5, 2] = -period
         self.x = np.array([v_x + period * a_x, a_x, w_z])
         self.q_v = product(rodrigues(np.array([0.0, 0.0, angle])), self.q_v)
@@ -150,9 +151,11 @@ def test_kernel_agrees_with_the_textbook(seed: int) -> None:
     np.testing.assert_allclose([kernel["speed"], kernel["acceleration"], kernel["yaw_rate"]], twin.x, atol=1e-9)
     np.testing.assert_allclose(matrix(kernel["q_vs"]), FLU_FROM_FRD @ rotation(twin.q_a), atol=1e-9)
     np.testing.assert_allclose(matrix(kernel["q_nv"]), N_FROM_T @ rotation(twin.q_v) @ FLU_FROM_FRD, atol=1e-9)
-    to_kernel = np.zeros((9, 9))  # error vectors of the thesis frames in ours
+    to_kernel = np.zeros((9, 9))  # error vectors of the thesis frames in ours, of the attitude in the vehicle's axes
     to_kernel[:3, :3] = np.eye(3)
-    to_kernel[3:6, 3:6] = N_FROM_T
+    to_kernel[3:6, 3:6] = matrix(kernel["q_nv"]).T @ N_FROM_T
     to_kernel[6:, 6:] = FLU_FROM_FRD
-    np.testing.assert_allclose(kernel["covariance"][:9, :9], to_kernel @ twin.p @ to_kernel.T, atol=1e-9)
-    assert not kernel["covariance"][9:].any(), "the biases are no states of the thesis filter"
+    states = np.r_[0:3, ATTITUDE : ATTITUDE + 3, MOUNTING : MOUNTING + 3]
+    covariance = kernel["covariance"]
+    np.testing.assert_allclose(covariance[np.ix_(states, states)], to_kernel @ twin.p @ to_kernel.T, atol=1e-9)
+    assert not covariance[BIAS : BIAS + 3].any(), "the biases are no states of the thesis filter"
