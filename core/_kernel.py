@@ -927,7 +927,7 @@ def turn_rows(rows, t):
 
 @njit(cache=True, nogil=True)
 def keep_level_covariance(m, before):
-    """After a change of the attitude: its covariance stays what it is in the level frame, and turns in the vehicle's."""
+    """After a change of the attitude: its covariance stays what it is in the level frame."""
     after, t = np.empty((3, 3)), np.zeros((3, 3))
     rotation_matrix(m["q_nv"], after)
     for i in range(3):
