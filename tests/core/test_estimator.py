@@ -49,7 +49,8 @@ def test_stages_follow_each_other_and_progress_does_not_fall() -> None:
     _, outcome = result("city")
     rows = outcome.estimates
     assert np.all(np.diff(rows.t) > 0)
-    assert set(rows.stage) == {Stage.ALIGNING, Stage.SETTLING, Stage.VERIFYING, Stage.CONFIRMED}
+    assert set(rows.stage) == {Stage.SETTLING, Stage.VERIFYING, Stage.CONFIRMED}
+    assert np.all(np.diff(rows.stage[rows.stage != Stage.VERIFYING]) >= 0)
     failed = [e.t for e in outcome.events if e.kind is EventKind.VERIFICATION_FAILED]
     drops = rows.t[1:][np.diff(rows.progress) < 0]
     assert len(drops) <= len(failed)
@@ -226,7 +227,7 @@ def test_an_orientation_change_is_found_and_the_new_mounting_confirmed() -> None
     confirmed = [e for e in outcome.events if e.kind is EventKind.CONFIRMED]
     assert len(changes) == 1
     assert 400 < changes[0].t < 580
-    assert changes[0].angle == pytest.approx(25 * DEGREE, abs=8 * DEGREE)
+    assert changes[0].angle == pytest.approx(25 * DEGREE, abs=4 * DEGREE)
     assert len(confirmed) == 2
     assert confirmed[0].quaternion is not None
     assert angle_between(confirmed[0].quaternion, truth.q_vs) < 3 * DEGREE
@@ -242,7 +243,7 @@ def test_the_old_mounting_stays_readable_while_suspect() -> None:
     _, outcome = run(samples.slice(0, int(np.searchsorted(samples.t, change.t + 1))))
     assert outcome.status.mount is not None
     assert outcome.status.mount.suspect
-    assert outcome.status.stage is Stage.ALIGNING
+    assert outcome.status.stage is Stage.SETTLING, "what showed the change goes on as the new estimate"
     assert outcome.status.progress < 0.6
 
 
