@@ -33,10 +33,10 @@ class Story(NamedTuple):
 
 @cache
 def plain(seed: int = 2) -> Story:
-    """Town driving until the mounting is confirmed, and two chunks more."""
+    """Town driving until the mounting is confirmed, and two chunks more; eight at least."""
     samples = simulate(_scenario(seed, PLAIN_SECONDS)).samples
     confirmed = _chunks_of(samples, EventKind.CONFIRMED)[0]
-    return _cut(samples, confirmed + 3, confirmed, -1, -1)
+    return _cut(samples, max(confirmed + 3, 8), confirmed, -1, -1)
 
 
 @cache

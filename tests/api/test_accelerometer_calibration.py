@@ -88,7 +88,9 @@ def test_numbers_that_are_none_are_refused(api: Api, number: str) -> None:
 
 
 def test_the_estimator_gets_what_a_perfect_accelerometer_would_read(api: Api) -> None:
-    perfect, ignorant = api.add_device("a"), api.add_device("b")
+    flawless = {"gain": np.eye(3).tolist(), "offset": [0.0, 0.0, 0.0]}
+    perfect = api.add_device("a", accelerometer_calibration=flawless)
+    ignorant = api.add_device("b")
     calibrated = api.add_device("c", accelerometer_calibration=SETTING)
     perfect.send_all(chunks()[:LENGTH])
     calibrated.send_all(distorted())

@@ -17,6 +17,7 @@ const installation = (stage: Stage): Installation => ({
   estimate: null,
   verification: { state: "idle", elapsed_s: 0, duration_s: 40, error_mps: null, limit_mps: 2.5 },
   mount: null,
+  limits: { yaw_sigma_deg: 1.5, tilt_sigma_deg: 1.3 },
   open_alerts: 0,
   last_data_at: "2025-11-22T10:01:00Z",
   revision: 7,
