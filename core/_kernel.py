@@ -1961,7 +1961,8 @@ def verify(p, s, v, m, e, sigma, events, count):
     count = write_test(events, count, e["t"], code, v, reason)
     if reason != REASON_NONE:
         s["progress"] = 0.0
-        soft_start(s)
+        if not by_energy:
+            soft_start(s)  # else the average, which already knows of the test, may be the next candidate
         return count
     if by_energy:
         v["q_vs"][:] = s["average"]

@@ -170,7 +170,7 @@ class FilterParameters:
     """rad/s, sigma_GPS,w of the differenced course; infinite = not used, the velocity vector already tells"""
     gyro_noise: float = 0.004
     """rad/s, epoch mean of the angular rate not explained; infinite = gyroscope not used"""
-    bounce_sigma: float = 0.3 * DEGREE
+    bounce_sigma: float = 0.5 * DEGREE
     """rad, roll and pitch of the body on its springs, from one epoch to the next"""
     standstill_yaw_rate_noise: float = 0.05
     """rad/s, a standing vehicle does not turn; infinite = not used"""
@@ -202,9 +202,9 @@ class SettlingParameters:
     """rad; RELIABLE, and so ready for the drive test, below"""
     start_tilt_sigma: float = 1.6 * DEGREE
     """rad; RELIABLE below"""
-    yaw_sigma: float = 1.5 * DEGREE
+    yaw_sigma: float = 1.3 * DEGREE
     """rad; confirmed below"""
-    tilt_sigma: float = 1.3 * DEGREE
+    tilt_sigma: float = 1.2 * DEGREE
     """rad; confirmed below"""
     excitation: float = 15.0
     """m2/s3, time integral of squared horizontal acceleration needed"""

@@ -42,7 +42,7 @@ def test_a_new_device_waits_for_data(device: Device) -> None:
         "estimate": None,
         "verification": {"state": "idle", "elapsed_s": 0.0, "duration_s": 40.0, "error_mps": 0.0, "limit_mps": 2.5},
         "mount": None,
-        "limits": {"yaw_sigma_deg": 1.5, "tilt_sigma_deg": 1.3},
+        "limits": {"yaw_sigma_deg": 1.3, "tilt_sigma_deg": 1.2},
         "open_alerts": 0,
         "last_data_at": None,
         "revision": 0,
