@@ -74,7 +74,6 @@ EPOCH = np.dtype(
         ("altitude", "f8"),  # m as received, nan = none
         ("vertical_speed", "f8"),  # m/s as received, nan = none
         ("climb", "f8"),  # m/s from the smoothed altitude, nan = no altitude
-        ("climb_height", "f8"),  # m gained
         ("grade", "f8"),  # sine of the slope
         ("moving", "?"),
         ("usable", "?"),
@@ -431,7 +430,6 @@ def start_epoch(c, t, speed, course):
     c["fix_t"] = t
     c["fix_speed"] = speed
     c["fix_course"] = course
-    c["fix_altitude"] = c["altitude"]
     c["fix_integral"][:] = c["integral"]
     c["flat_tops"] = 0
     c["samples"] = 0
@@ -457,12 +455,9 @@ def describe_epoch(p, c, e, t, speed, course, fix):
     e["altitude"] = fix[2]
     e["vertical_speed"] = fix[5]
     e["climb"] = c["climb"] if math.isfinite(c["altitude"]) else np.nan
-    e["climb_height"] = c["altitude"] - c["fix_altitude"]
     e["grade"] = 0.0
     if math.isfinite(e["climb"]) and e["mean_speed"] > 3 * p["epoch_moving_speed"]:
         e["grade"] = min(max(e["climb"] / e["mean_speed"], -0.2), 0.2)
-    if not math.isfinite(e["climb_height"]):
-        e["climb_height"] = 0.0
     jump = abs(e["speed_change"]) > p["epoch_max_acceleration"] * period
     return not (jump or (e["moving"] and abs(e["yaw_rate"]) > p["epoch_max_yaw_rate"]))
 
@@ -583,21 +578,18 @@ def accumulate_gyro(p, a, x, weight, first, count):
 
 
 @njit(cache=True, nogil=True)
-def forget(a, factor):
-    """Scale all sums, so that old epochs count less."""
-    a["time"] *= factor
-    a["solved_time"] *= factor
-    a["k"][:] *= factor
-    a["kk"][:] *= factor
-    a["f"][:] *= factor
-    a["fk"][:] *= factor
-    a["ff"][:] *= factor
-    a["gyro_time"] *= factor
-    a["r"] *= factor
-    a["rr"] *= factor
-    a["w"][:] *= factor
-    a["wr"][:] *= factor
-    a["ww"][:] *= factor
+def clear_sums(a):
+    """Empty the accumulators of a coarse alignment; latency and noise stay known."""
+    a["time"] = a["gyro_time"] = a["r"] = a["rr"] = 0.0
+    a["k"][:] = 0.0
+    a["kk"][:] = 0.0
+    a["f"][:] = 0.0
+    a["fk"][:] = 0.0
+    a["ff"][:] = 0.0
+    a["w"][:] = 0.0
+    a["wr"][:] = 0.0
+    a["ww"][:] = 0.0
+    a["solved_time"] = np.nan
 
 
 @njit(cache=True, nogil=True)
@@ -1703,13 +1695,6 @@ def confirm(s, v, t):
     s["mount_sigma"][:] = v["sigma"]
     s["mount_error"] = v["error"]
     s["mount_limit"] = v["limit"]
-
-
-@njit(cache=True, nogil=True)
-def clear_sums(a):
-    """Empty the accumulators of a coarse alignment; latency and noise stay known."""
-    forget(a, 0.0)
-    a["solved_time"] = np.nan
 
 
 @njit(cache=True, nogil=True)

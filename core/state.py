@@ -32,7 +32,6 @@ CLOCK = np.dtype(
         ("fix_t", "f8"),  # s, the fix that began the current epoch, nan = none
         ("fix_speed", "f8"),
         ("fix_course", "f8"),  # rad clockwise from north, nan = unknown
-        ("fix_altitude", "f8"),  # m, smoothed, nan = unknown
         ("fix_integral", "f8", (7,)),  # the integral at fix_t
         ("climb", "f8"),  # m/s, smoothed
         ("altitude_t", "f8"),  # s, last altitude
@@ -213,7 +212,7 @@ def empty_clock() -> NDArray[np.void]:
     """Clock at the beginning of a session: nothing known."""
     clock = np.zeros(1, CLOCK)
     for name in (
-        "t", "fix_t", "fix_speed", "fix_course", "fix_altitude", "altitude_t", "altitude", "position_t",
+        "t", "fix_t", "fix_speed", "fix_course", "altitude_t", "altitude", "position_t",
         "latitude", "longitude", "valid_fix_t", "motion_t", "travel_course", "next_report",
     ):  # fmt: skip
         clock[name] = np.nan
