@@ -44,11 +44,9 @@ VELOCITIES, HEIGHTS, FORCES, LATELY = range(4)
 DUPLICATE_TIME, BEFORE_PREVIOUS, FIX_WITHOUT_VELOCITY, FIX_IMPLAUSIBLE = range(4)
 """Reasons of rejection."""
 
-NO_EPOCH, BROKEN, COMPLETE = range(3)
+NO_EPOCH, BROKEN, OUTAGE, COMPLETE = range(4)
 """What a fix makes of the epoch before it."""
 
-NOT_STARTED, STARTED_NOW, CARRY_ON = range(3)
-"""What may be done with the filter in an epoch."""
 IDLE, WATCHING, SUSPICIOUS = range(3)
 """States of the watch for an orientation change."""
 MOST_EVIDENCE = 1e6
@@ -481,16 +479,16 @@ def take_fix(p, c, e, t, fix, counts, scratch):
     watch_direction(p, c, speed, course)
     if speed >= p["epoch_moving_speed"]:
         c["motion_t"] = t
-    complete = False
-    if period <= p["epoch_max_epoch"]:
-        complete = describe_epoch(p, c, e, t, speed, course, fix)
-        if not complete:
-            counts[FIX_IMPLAUSIBLE] += 1
-        e["usable"] = complete and not c["reversing"] and c["flat_tops"] == 0
-        e["flat_tops"] = c["flat_tops"]
     e["next_speed"] = speed
     e["next_course"] = course
-    return COMPLETE if complete else BROKEN
+    if not period <= p["epoch_max_epoch"]:
+        return OUTAGE
+    if not describe_epoch(p, c, e, t, speed, course, fix):
+        counts[FIX_IMPLAUSIBLE] += 1
+        return BROKEN
+    e["usable"] = not c["reversing"] and c["flat_tops"] == 0
+    e["flat_tops"] = c["flat_tops"]
+    return COMPLETE
 
 
 # ------------------------------------------------------------------------------------------------ coarse alignment
@@ -1463,7 +1461,7 @@ def fold(p, m, dx):
 
 @njit(cache=True, nogil=True)
 def start_where_possible(p, m, a, e):
-    """Start the filter or its motion where it is not running; CARRY_ON when there is a step to make."""
+    """Start the filter or its motion where it is not running; True when there is a step to make already."""
     heading_known = e["moving"] and math.isfinite(e["course"])
     if not p["filter_start_from_coarse"]:
         if not m["running"]:
@@ -1474,20 +1472,20 @@ def start_where_possible(p, m, a, e):
             set_heading(m, e["course"])
             keep_level_covariance(m, before)
             m["aligned"] = True
-        return CARRY_ON
+        return True
     if m["running"] and m["aligned"]:
-        return CARRY_ON
+        return True
     if not heading_known:
-        return NOT_STARTED
+        return False
     if m["running"]:
         begin_motion(p, m, e)
-        return STARTED_NOW
+        return False
     sigma = largest_sigma(a["covariance"])
     if not math.isfinite(a["solved_time"]) or sigma > p["filter_start_sigma"]:
-        return NOT_STARTED
+        return False
     start_filter(p, m, e, a["q_vs"], a["covariance"], a["bias"], a["latency"])
     m["refined"] = sigma < p["filter_refine_sigma"]
-    return STARTED_NOW
+    return False
 
 
 @njit(cache=True, nogil=True)
@@ -1496,9 +1494,8 @@ def step_filter(p, c, m, a, e, scratch):
     if not e["usable"]:
         m["aligned"] = False
         return False
-    start = start_where_possible(p, m, a, e)
-    if start != CARRY_ON:
-        return start == STARTED_NOW
+    if not start_where_possible(p, m, a, e):
+        return False
     if not delayed_signals(p, c, m["latency"], e, scratch):
         m["aligned"] = False
         return False
@@ -1681,6 +1678,8 @@ def drive_limit(p, v, m):
     variance = p["filter_altitude_drift"] * v["elapsed"] + p["filter_altitude_noise"] ** 2
     height = math.sqrt(variance) * learnt_noise(p, m, HEIGHTS)
     slack = 2 * GRAVITY * height * v["elapsed"] / max(v["distance"], 1e-9)
+    if not math.isfinite(m["altitude"]):
+        slack = np.inf
     return math.sqrt(p["verification_limit"] ** 2 + min(slack, p["verification_limit"]) ** 2)
 
 
@@ -1695,6 +1694,7 @@ def confirm(s, v, t):
     s["mount_sigma"][:] = v["sigma"]
     s["mount_error"] = v["error"]
     s["mount_limit"] = v["limit"]
+    s["mount_elapsed"] = v["elapsed"]
 
 
 @njit(cache=True, nogil=True)
@@ -2031,11 +2031,8 @@ def find_faults(p, c, a, f, e, events, evidence, count):
 def watch_looseness(p, f, g, t, changed, moved_on, events, evidence, count):
     """A device whose mounting changes again and again is loose: each change counts, and fades with the hours."""
     if changed or moved_on:
-        faded = (
-            f["restlessness"] * math.exp(-(t - f["restless_t"]) / p["fault_loose_memory"])
-            if t > f["restless_t"]
-            else 0.0
-        )
+        since = t - f["restless_t"] if t > f["restless_t"] else 0.0
+        faded = f["restlessness"] * math.exp(-since / p["fault_loose_memory"])
         f["restlessness"] = faded + (1.0 if changed else p["fault_moved_on_weight"])
         f["restless_t"] = t
     loose = f["restlessness"] > p["fault_loose"]
@@ -2207,6 +2204,9 @@ def run(
                     event_count = process_epoch(
                         p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence, event_count
                     )
+                elif end == OUTAGE:  # nobody knows how the vehicle has turned meanwhile
+                    mekf[0]["aligned"] = mekf[1]["aligned"] = False
+                    x["period"] = 0.0
                 if end != NO_EPOCH:
                     start_epoch(c, t[i - 1], e["next_speed"], e["next_course"])
             next_fix += 1

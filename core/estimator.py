@@ -73,7 +73,8 @@ def begin_session(params: Parameters, state: State) -> State:
     state.filter["aligned"] = False
     state.merged["period"] = 0.0
     state.change["state"] = 0  # what was suspected before is not known to be of this mounting
-    state.faults["restless_t"] = 0.0
+    state.change["series_count"] = 0
+    state.faults["restless_t"] = np.nan
     return state._replace(clock=empty_clock())
 
 
@@ -212,7 +213,11 @@ def _mount(params: Parameters, state: State) -> Mount | None:
         quaternion=record["mount_q_vs"].copy(),
         sigma=record["mount_sigma"].copy(),
         verification=Verification(
-            "passed", test.duration, test.duration, float(record["mount_error"]), float(record["mount_limit"])
+            "passed",
+            float(record["mount_elapsed"]),
+            test.duration,
+            float(record["mount_error"]),
+            float(record["mount_limit"]),
         ),
         suspect=bool(record["suspect"]),
     )

@@ -357,7 +357,7 @@ THESIS = Parameters(
     ),
     settling=SettlingParameters(average_window=math.inf, reliable_yaw_rate=0.15, systematic_sigma=0.0),
     verification=VerificationParameters(by_energy=False),
-    change=ChangeParameters(min_angle=15 * DEGREE, window=math.inf),
+    change=ChangeParameters(window=math.inf),
 )
 """Table 5.1 (variances at T = 0.25 s), n = 100, 40 s and 2.5 m/s, RELIABLE by yaw rate (thesis 5.2-5.4)."""
 

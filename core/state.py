@@ -130,6 +130,7 @@ SETTLING = np.dtype(
         ("mount_sigma", "f8", (3,)),
         ("mount_error", "f8"),  # m/s, of its drive test
         ("mount_limit", "f8"),  # m/s
+        ("mount_elapsed", "f8"),  # s
         ("has_mount", "?"),
         ("suspect", "?"),
     ]
