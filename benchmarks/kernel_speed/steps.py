@@ -1,0 +1,112 @@
+"""One epoch of the filter, three ways: the kernel, plain numpy, and filterpy with the matrices the kernel stands for."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from filterpy.kalman import KalmanFilter
+from numba import njit
+from numpy.typing import NDArray
+
+import core
+from core import _kernel
+from core.params import as_record
+
+Floats = NDArray[np.float64]
+
+
+class Model(NamedTuple):
+    """The step of one epoch as matrices, n states and k measurements."""
+
+    x: Floats
+    """(n,)"""
+    p: Floats
+    """(n, n)"""
+    f: Floats
+    """(n, n) transition"""
+    q: Floats
+    """(n, n) process noise"""
+    h: Floats
+    """(k, n)"""
+    r: Floats
+    """(k, k) measurement noise"""
+    z: Floats
+    """(k,) measured less predicted at the point of linearisation, as an error state sees it"""
+
+
+def _walk(params: Any, filters: Any, epochs: Any, n: int) -> None:
+    """Predict and update over all epochs, inside machine code."""
+    p, m = params[0], filters[0]
+    for i in range(epochs.shape[0]):
+        e = epochs[i]
+        _kernel.predict(p, m, e["period"], n)
+        _kernel.update(p, m, e, n)
+
+
+def _linearise(params: Any, filters: Any, epochs: Any, n: int, f: Any, h: Any, y: Any, noise: Any) -> None:
+    """Predict, and fill transition (of a unit matrix), Jacobian, innovations, and noises of the first epoch."""
+    p, m, e = params[0], filters[0], epochs[0]
+    bank, grade, r = np.empty((2, 2)), np.empty((2, 2)), np.empty((3, 3))
+    distance = e["period"] * m["speed"]
+    _kernel.road_transition(p["filter_bank_length"], distance, bank)
+    _kernel.road_transition(p["filter_grade_length"], distance, grade)
+    _kernel.rotation_matrix(m["q_nv"], r)
+    _kernel.remember_rows(f, n)
+    _kernel.transition_rows(f, n, e["period"], p["filter_mean_share"], distance, r[2].copy(), bank, grade)
+    _kernel.predict(p, m, e["period"], n)
+    z = np.empty(_kernel.MEASUREMENTS)
+    _kernel.rotation_matrix(m["q_vs"], r)
+    _kernel.predict_measurements(p, m, e, r, z, h)
+    _kernel.observe(p, m, e, r, y, noise)
+    y -= z
+
+
+walk = njit(nogil=True)(_walk)
+linearise = njit(nogil=True)(_linearise)
+
+
+def states_of(filters: NDArray[np.void]) -> int:
+    """Give how many states the filter carries."""
+    return _kernel.STATES if filters["gyro"][0] else _kernel.GYRO_BIAS
+
+
+def model_of(filters: NDArray[np.void], epoch: NDArray[np.void]) -> Model:
+    """Give the kernel's step over one epoch, (1,), as dense matrices; the filter is left as it is."""
+    n, params = states_of(filters), as_record(core.DEFAULT)
+    f, h = np.eye(_kernel.STATES), np.empty((_kernel.MEASUREMENTS, _kernel.STATES))
+    y, noise = np.empty(_kernel.MEASUREMENTS), np.empty(_kernel.MEASUREMENTS)
+    certain = filters.copy()
+    certain["covariance"] = 0.0
+    linearise(params, certain, epoch, n, f, h, y, noise)
+    seen = np.isfinite(noise)
+    q = certain["covariance"][0, :n, :n]
+    p = filters["covariance"][0, :n, :n].copy()
+    return Model(np.zeros(n), p, f[:n, :n].copy(), q.copy(), h[seen, :n], np.diag(noise[seen] ** 2), y[seen])
+
+
+def numpy_step(x: Floats, p: Floats, model: Model) -> tuple[Floats, Floats]:
+    """Predict and update, all measurements at once: the shortest way numpy has."""
+    f, h = model.f, model.h
+    x = f @ x
+    p = f @ p @ f.T + model.q
+    ph = p @ h.T
+    gain = np.linalg.solve(h @ ph + model.r, ph.T).T
+    return x + gain @ (model.z - h @ x), p - gain @ ph.T
+
+
+def numpy_joseph_step(x: Floats, p: Floats, model: Model) -> tuple[Floats, Floats]:
+    """Predict and update in Joseph's form, which filterpy uses."""
+    f, h = model.f, model.h
+    x = f @ x
+    p = f @ p @ f.T + model.q
+    ph = p @ h.T
+    gain = np.linalg.solve(h @ ph + model.r, ph.T).T
+    rest = np.eye(x.size) - gain @ h
+    return x + gain @ (model.z - h @ x), rest @ p @ rest.T + gain @ model.r @ gain.T
+
+
+def filterpy_filter(model: Model) -> KalmanFilter:
+    """Give a filter of filterpy with these matrices."""
+    kalman = KalmanFilter(model.x.size, model.z.size)
+    kalman.x, kalman.P = model.x.copy(), model.p.copy()
+    kalman.F, kalman.Q, kalman.H, kalman.R = model.f, model.q, model.h, model.r
+    return kalman
