@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench bench-accuracy clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -67,6 +67,9 @@ bench: setup
 
 bench-accuracy: setup  ## accuracy, honesty and alarms on thousands of drives: writes docs/accuracy.md
 	$(BIN)/python benchmarks/accuracy.py
+
+bench-kernel: setup  ## speed beside numpy and filterpy: writes docs/performance.md
+	$(BIN)/python benchmarks/kernel.py
 
 clean:
 	rm -rf .venv web/node_modules api/static build

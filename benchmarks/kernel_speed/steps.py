@@ -1,5 +1,6 @@
 """One epoch of the filter, three ways: the kernel, plain numpy, and filterpy with the matrices the kernel stands for."""
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,22 @@ from core import _kernel
 from core.params import as_record
 
 Floats = NDArray[np.float64]
+
+
+class Minute(NamedTuple):
+    """What the filter goes through in a minute."""
+
+    params: NDArray[np.void]
+    """(1,)"""
+    filters: NDArray[np.void]
+    """(2,) as they are at its beginning"""
+    epochs: NDArray[np.void]
+    """(N,)"""
+
+    @property
+    def states(self) -> int:
+        """How many states the filter carries."""
+        return _kernel.STATES if self.filters["gyro"][0] else _kernel.GYRO_BIAS
 
 
 class Model(NamedTuple):
@@ -64,23 +81,39 @@ walk = njit(nogil=True)(_walk)
 linearise = njit(nogil=True)(_linearise)
 
 
-def states_of(filters: NDArray[np.void]) -> int:
-    """Give how many states the filter carries."""
-    return _kernel.STATES if filters["gyro"][0] else _kernel.GYRO_BIAS
+def usual(filters: NDArray[np.void], epochs: NDArray[np.void]) -> Minute:
+    """Give a minute with the measurements the preset `default` takes in motion."""
+    return Minute(as_record(core.DEFAULT), filters, epochs)
 
 
-def model_of(filters: NDArray[np.void], epoch: NDArray[np.void]) -> Model:
-    """Give the kernel's step over one epoch, (1,), as dense matrices; the filter is left as it is."""
-    n, params = states_of(filters), as_record(core.DEFAULT)
+def fullest(filters: NDArray[np.void], epochs: NDArray[np.void]) -> Minute:
+    """Give a minute in which every epoch has every measurement the kernel knows, that of standstill too."""
+    noises = replace(
+        core.DEFAULT.filter, climb_noise=1.0, course_rate_noise=1.0, standstill_yaw_rate_noise=1.0, altitude_noise=1.0
+    )
+    epochs = epochs.copy()
+    epochs["mean_speed"] = 0.0
+    return Minute(as_record(replace(core.DEFAULT, filter=noises)), filters, epochs)
+
+
+def through(minute: Minute) -> NDArray[np.void]:
+    """Give what becomes of the filters in the minute."""
+    filters = minute.filters.copy()
+    walk(minute.params, filters, minute.epochs, minute.states)
+    return filters
+
+
+def model_of(minute: Minute) -> Model:
+    """Give the kernel's step over the first epoch as dense matrices."""
+    n = minute.states
     f, h = np.eye(_kernel.STATES), np.empty((_kernel.MEASUREMENTS, _kernel.STATES))
     y, noise = np.empty(_kernel.MEASUREMENTS), np.empty(_kernel.MEASUREMENTS)
-    certain = filters.copy()
+    certain = minute.filters.copy()
     certain["covariance"] = 0.0
-    linearise(params, certain, epoch, n, f, h, y, noise)
+    linearise(minute.params, certain, minute.epochs, n, f, h, y, noise)
     seen = np.isfinite(noise)
-    q = certain["covariance"][0, :n, :n]
-    p = filters["covariance"][0, :n, :n].copy()
-    return Model(np.zeros(n), p, f[:n, :n].copy(), q.copy(), h[seen, :n], np.diag(noise[seen] ** 2), y[seen])
+    q, p = certain["covariance"][0, :n, :n].copy(), minute.filters["covariance"][0, :n, :n].copy()
+    return Model(np.zeros(n), p, f[:n, :n].copy(), q, h[seen, :n].copy(), np.diag(noise[seen] ** 2), y[seen])
 
 
 def numpy_step(x: Floats, p: Floats, model: Model) -> tuple[Floats, Floats]:
@@ -109,4 +142,21 @@ def filterpy_filter(model: Model) -> KalmanFilter:
     kalman = KalmanFilter(model.x.size, model.z.size)
     kalman.x, kalman.P = model.x.copy(), model.p.copy()
     kalman.F, kalman.Q, kalman.H, kalman.R = model.f, model.q, model.h, model.r
+    return kalman
+
+
+def repeat_numpy(step: Any, model: Model, count: int) -> Floats:
+    """Make so many steps of numpy."""
+    x, p = model.x, model.p
+    for _ in range(count):
+        x, p = step(x, p, model)
+    return p
+
+
+def repeat_filterpy(model: Model, count: int) -> KalmanFilter:
+    """Make so many steps of filterpy."""
+    kalman = filterpy_filter(model)
+    for _ in range(count):
+        kalman.predict()
+        kalman.update(model.z)
     return kalman

@@ -3,9 +3,11 @@
 import gc
 import time
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
+
+Name = TypeVar("Name")
 
 
 class Contender(NamedTuple):
@@ -23,7 +25,7 @@ class Timing(NamedTuple):
     least: float
 
 
-def in_turn(contenders: Mapping[str, Contender], repeats: int) -> dict[str, Timing]:
+def in_turn(contenders: Mapping[Name, Contender], repeats: int) -> dict[Name, Timing]:
     """Call each once to warm up, then all of them in turn, `repeats` times, without garbage collection."""
     seconds = np.empty((repeats, len(contenders)))
     for contender in contenders.values():
@@ -37,4 +39,5 @@ def in_turn(contenders: Mapping[str, Contender], repeats: int) -> dict[str, Timi
                 seconds[repeat, i] = (time.perf_counter() - begin) / contender.count
     finally:
         gc.enable()
-    return {name: Timing(float(np.median(column)), float(column.min())) for name, column in zip(contenders, seconds.T)}
+    columns = zip(contenders, seconds.T, strict=True)
+    return {name: Timing(float(np.median(column)), float(column.min())) for name, column in columns}
