@@ -10,7 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from benchmarks.kernel_speed.page import write_page
 
-REPEATS = 60
+REPEATS = 300
 FEWEST = 30
 
 

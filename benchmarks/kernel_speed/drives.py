@@ -64,7 +64,7 @@ def _choose(chunks: list[Chunk]) -> Drive | None:
     watching = [int(chunk.state.change["state"][0]) == _kernel.WATCHING for chunk in chunks]
     whole = range(2, len(chunks) - 1)
     driven = [i for i in whole if len(collect_epochs(chunks[i])) >= FEWEST_EPOCHS]
-    settling = [i for i in driven if Stage.SETTLING <= stages[i] and stages[i + 1] < Stage.CONFIRMED]
+    settling = [i for i in driven if stages[i] >= Stage.SETTLING and stages[i + 1] < Stage.CONFIRMED]
     confirmed = [i for i in driven if watching[i] and watching[i + 1] and stages[i] == stages[i + 1] == Stage.CONFIRMED]
     return Drive(chunks[settling[-1]], chunks[confirmed[-1]]) if settling and confirmed else None
 

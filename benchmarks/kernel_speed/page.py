@@ -50,8 +50,9 @@ INTRODUCTION = """# How fast
 What the estimator with the preset `default` needs on one core, beside a plain numpy filter and one of filterpy of the
 same size. Every figure is computed; made by `make bench-kernel`, or `python benchmarks/kernel.py`.
 
-The figures are medians of one run on a shared machine, the shortest time behind the slash: seconds differ from run to
-run, and the ratios are what counts. All contenders take turns, so that what else the machine does falls on all alike."""
+The figures are medians of one run on a shared machine, the shortest time behind the slash. Seconds differ from run to
+run, and a target whose figure is near it may go the other way in the next; the ratios are what counts. All contenders
+take turns in random order, so that what else the machine does falls on all alike."""
 
 CHUNK_TEXT = """## A minute of data
 
@@ -62,10 +63,11 @@ STEP_TEXT = """## An epoch of the filter
 
 Prediction and update of one epoch in µs, and in brackets how many times the kernel's time that is. The kernel goes
 through the epochs of a real minute inside machine code. numpy and filterpy are handed the matrices that the kernel's
-step stands for, and nothing else to do: their covariances agree with the kernel's to rounding, which a test holds. The
-kernel also computes the predictions, the Jacobian and the noises, gates each measurement and learns its noise, so the
-ratios favour the others. "Usual" are the measurements taken in motion; "all" adds climb, yaw rate from the course and
-standstill, which no single epoch of the preset has."""
+step stands for, and nothing else to do; gating apart, their covariances agree with the kernel's to rounding, which a
+test holds. They are called from Python, as such filters are, so part of their time is Python's. The kernel also
+computes the predictions, the Jacobian and the noises, gates each measurement and learns its noise. "Usual" are the
+measurements taken in motion; "all" adds climb, yaw rate from the course and standstill, which no single epoch of the
+preset has."""
 
 
 def contenders() -> tuple[dict[tuple[str, ...], Contender], Shapes]:

@@ -1,4 +1,4 @@
-"""One epoch of the filter, three ways: the kernel, plain numpy, and filterpy with the matrices the kernel stands for."""
+"""One epoch of the filter, three ways: the kernel, and numpy and filterpy with the matrices it stands for."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple

@@ -1,4 +1,4 @@
-"""Times of things that are run in turn, so that what else the machine does falls on all alike."""
+"""Times of things that are run in turn, in random order, so that what else the machine does falls on all alike."""
 
 import gc
 import time
@@ -14,8 +14,8 @@ class Contender(NamedTuple):
     """What is timed."""
 
     call: Callable[[], object]
-    count: int
-    """units of work in a call"""
+    units: int
+    """of work in a call"""
 
 
 class Timing(NamedTuple):
@@ -26,17 +26,18 @@ class Timing(NamedTuple):
 
 
 def in_turn(contenders: Mapping[Name, Contender], repeats: int) -> dict[Name, Timing]:
-    """Call each once to warm up, then all of them in turn, `repeats` times, without garbage collection."""
+    """Call each once to warm up, then all of them, `repeats` times, each round in an order of its own."""
+    calls, rng = list(contenders.values()), np.random.default_rng(0)
     seconds = np.empty((repeats, len(contenders)))
-    for contender in contenders.values():
+    for contender in calls:
         contender.call()
     gc.disable()
     try:
         for repeat in range(repeats):
-            for i, contender in enumerate(contenders.values()):
+            for i in rng.permutation(len(calls)):
                 begin = time.perf_counter()
-                contender.call()
-                seconds[repeat, i] = (time.perf_counter() - begin) / contender.count
+                calls[i].call()
+                seconds[repeat, i] = (time.perf_counter() - begin) / calls[i].units
     finally:
         gc.enable()
     columns = zip(contenders, seconds.T, strict=True)
