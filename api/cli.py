@@ -90,7 +90,11 @@ def calibrate(
 def simulate(
     out: Annotated[Path, typer.Argument(help="Log to write, .csv or .csv.gz.", show_default=False)],
     route: Annotated[
-        str, typer.Option(help="Kind of drive: city, hills, straight, motorway, parked or roundabout.")
+        str,
+        typer.Option(
+            help="Kind of drive: city, hills, straight, motorway, parked, roundabout, curves, constant, steep, crawl, "
+            "towed or ferry."
+        ),
     ] = "city",
     seconds: Annotated[float, typer.Option(min=1.0, max=86400.0, help="Length of the drive.")] = 600.0,
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same drive.")] = 0,

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 from api.cli import app
 from api.formats.files import open_log
 from core import quaternion
+from core.simulation_routes import ROUTES
 from tests.cli.conftest import Log
 
 SHORT = ["--seconds", "5", "--seed", "7"]
@@ -73,3 +74,8 @@ def test_arguments_that_cannot_be_used(tmp_path: Path, arguments: list[str]) -> 
 @pytest.mark.parametrize("name", ["log.txt", "log", "nowhere/log.csv"])
 def test_files_that_cannot_be_written(tmp_path: Path, name: str) -> None:
     assert simulate(tmp_path / name, *SHORT) == 2
+
+
+def test_help_names_every_route() -> None:
+    text = CliRunner().invoke(app, ["simulate", "--help"], env={"COLUMNS": "200"}).stdout
+    assert all(route in text for route in ROUTES)
