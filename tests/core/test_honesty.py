@@ -57,7 +57,7 @@ def looks(road: str) -> Looks:
 @pytest.mark.parametrize("road", ROADS)
 def test_the_error_is_as_large_as_stated(road: str, minute: int) -> None:
     """The band is wider than the benchmark's, which averages many more drives."""
-    squares = looks(road).squares[:, LOOKS == 60.0 * minute]
+    squares = looks(road).squares[:, 60.0 * minute == LOOKS]
     assert np.isfinite(squares).sum() >= 16
     assert 0.4 < np.nanmean(squares) / 3 < 2.0
 
