@@ -113,7 +113,9 @@ def test_an_hour_at_a_standstill_changes_nothing(sensor: str, seed: int) -> None
     assert before.status.estimate is not None
     assert after.status.estimate is not None
     assert angle_between(after.status.estimate.quaternion, before.status.estimate.quaternion) < 0.5 * DEGREE
-    assert np.all(after.estimates.sigma > 0.9 * before.status.estimate.sigma)
+    shrunk = (after.estimates.sigma / before.status.estimate.sigma).min(axis=1)
+    assert shrunk[:600].min() > 0.95
+    assert shrunk.min() > 0.8
 
 
 @pytest.mark.parametrize("sensor", ["mems", "tmd2"])
