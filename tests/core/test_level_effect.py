@@ -1,12 +1,13 @@
 """What a level start is good for: roll and pitch are known before the drive has shown them."""
 
+from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from core import DEFAULT, Estimates, State, advance, calibrated, initial_state, level_start, status
+from core import DEFAULT, Estimates, State, advance, begin_session, calibrated, initial_state, level_start, status
 from core.quaternion import conjugate, multiply, rotation_vector
 from core.simulation import Drive, Scenario, simulate, simulate_sessions
 from tests.core.drives import Floats
@@ -40,8 +41,7 @@ class Pair(NamedTuple):
 def parked_then_driven(seed: int) -> Pair:
     drive = simulate(scenario(seed))
     parked = simulate(scenario(seed, "parked", 20.0, drive.truth.q_vs))
-    late = drive.samples.slice(0, len(drive.samples))
-    late.t[:] += 20.02
+    late = replace(drive.samples, t=drive.samples.t + 20.02)
     state, _ = advance(PARAMS, initial_state(PARAMS), parked.samples)
     return Pair(
         drive,
@@ -115,8 +115,16 @@ def test_a_running_filter_takes_it_too(seed: int) -> None:
 
 
 def test_in_a_later_session_it_keeps_what_is_confirmed() -> None:
+    """The vehicle is switched on, said to stand level before it moves, and driven."""
     first, second = simulate_sessions(scenario(36), 2)
     state, before = advance(PARAMS, initial_state(PARAMS), first.samples)
     assert before.status.mount is not None
-    stopped, _ = advance(PARAMS, state, second.samples.slice(0, 0))
-    assert str(status(PARAMS, stopped).mount) == str(before.status.mount)
+    parked = simulate(scenario(36, "parked", 20.0, first.truth.q_vs)).samples
+    state, _ = advance(PARAMS, begin_session(PARAMS, state), parked)
+    state = level_start(PARAMS, state)
+    assert str(status(PARAMS, state).mount) == str(before.status.mount)
+    _, after = advance(PARAMS, state, replace(second.samples, t=second.samples.t + 20.02))
+    assert after.events == ()
+    assert str(after.status.mount) == str(before.status.mount)
+    assert after.status.estimate is not None
+    assert tilt_error(after.status.estimate.quaternion, first.truth.q_vs) < 1.0 * DEGREE

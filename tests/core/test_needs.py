@@ -1,5 +1,6 @@
 """What the installer is told: which manoeuvre is missing, and how far along it is."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -155,6 +156,5 @@ def test_losing_the_receiver_asks_for_a_fix() -> None:
     half = len(samples) // 2
     state, _ = advance(DEFAULT, initial_state(DEFAULT), samples.slice(0, half))
     rest = samples.slice(half, len(samples))
-    rest.fix_valid[:] = False
-    _, outcome = advance(DEFAULT, state, rest)
+    _, outcome = advance(DEFAULT, state, replace(rest, fix_valid=np.zeros_like(rest.fix_valid)))
     assert outcome.status.needs == Needs.GPS_FIX
