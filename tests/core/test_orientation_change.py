@@ -179,7 +179,7 @@ def test_two_turns_do_not_make_a_device_loose(sensor: str) -> None:
     assert angle_between(outcome.status.mount.quaternion, drive.truth.q_vs) < 4 * DEGREE
 
 
-@pytest.mark.parametrize("seed", [21, 22, 23])
+@pytest.mark.parametrize("seed", [21, 22])
 @pytest.mark.parametrize("sensor", ["mems", "tmd2"])
 @pytest.mark.parametrize("route", ["city", "hills"])
 def test_an_hour_of_untouched_driving_reports_no_change(route: str, sensor: str, seed: int) -> None:

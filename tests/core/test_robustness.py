@@ -189,7 +189,7 @@ def test_mirrored_axes_are_reported_and_never_confirmed(
     assert fault.reason is not None
 
 
-@pytest.mark.parametrize("seed", range(400, 408))
+@pytest.mark.parametrize("seed", range(400, 404))
 @pytest.mark.parametrize("signs", [(1.0, 1.0, -1.0), (-1.0, -1.0, -1.0)])
 def test_a_straight_road_does_not_confirm_mirrored_axes(signs: tuple[float, float, float], seed: int) -> None:
     """Without bends a mirror image explains everything just as well, so that a sound device may have to wait."""
