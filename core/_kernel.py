@@ -707,21 +707,25 @@ def best_rotation(b, q):
 
 
 @njit(cache=True, nogil=True)
-def mirror_evidence(a, h, prior, noise, b):
+def mirror_evidence(p, a, noise, b):
     """How much better a mirror image explains the accelerations than any rotation does: log of the likelihood ratio.
 
-    The best reflection gains -tr from the smallest eigenvalue of Horn's matrix where the best rotation gains tr from
-    the largest; their sum is twice the smallest singular value of B with the sign of det(B).
+    The best reflection of B is the best rotation of -B. Each is tried at its own best latency, because mirrored axes
+    make a wrong latency look good.
     """
-    profile_matrix(a, h, prior, noise, np.inf, b)
     n = np.empty((4, 4))
-    horn_matrix(b, n)
-    rotation = largest_eigenvalue(b, n)
-    for i in range(3):
-        for j in range(3):
-            b[i, j] = -b[i, j]
-    horn_matrix(b, n)
-    return largest_eigenvalue(b, n) - rotation
+    rotation, reflection = np.inf, np.inf
+    for h in range(p["epoch_latency_count"]):
+        total = profile_matrix(a, h, noise / p["coarse_bias_sigma"] ** 2, noise, np.inf, b)
+        total += ((h * p["epoch_latency_step"] - p["coarse_latency"]) / p["coarse_latency_sigma"]) ** 2
+        horn_matrix(b, n)
+        rotation = min(rotation, total - 2 * largest_eigenvalue(b, n))
+        for i in range(3):
+            for j in range(3):
+                b[i, j] = -b[i, j]
+        horn_matrix(b, n)
+        reflection = min(reflection, total - 2 * largest_eigenvalue(b, n))
+    return 0.5 * (rotation - reflection)
 
 
 @njit(cache=True, nogil=True)
@@ -832,7 +836,7 @@ def update_coarse(p, a, e, k, b):
     solve_coarse(p, a, b, choose or not math.isfinite(a["solved_time"]))
     if choose:  # with the usual noise: mirrored axes fit no rotation, which would pass for noise
         noise = p["coarse_min_noise"] ** 2 * p["coarse_correlation_time"]
-        a["mirror"] = mirror_evidence(a, a["hypothesis"], noise / p["coarse_bias_sigma"] ** 2, noise, b)
+        a["mirror"] = mirror_evidence(p, a, noise, b)
     return True
 
 
@@ -1527,6 +1531,7 @@ def mounting_sigma(p, covariance, offset, ratio, sigma):
     """1 sigma about the vehicle axes, with what the model leaves out added in square."""
     for i in range(3):
         sigma[i] = math.sqrt(ratio**2 * covariance[offset + i, offset + i] + p["settling_systematic_sigma"] ** 2)
+        sigma[i] = min(sigma[i], math.pi)
 
 
 @njit(cache=True, nogil=True)
@@ -1646,7 +1651,11 @@ def drive_test(p, v, m, e):
     for i in range(3):
         v["impulse"][i] += speed * period * e["f_s"][i]
     v["energy"] += speed * e["speed_change"]
-    v["height"] += gained if math.isfinite(gained) else 0.0
+    if not math.isfinite(gained):  # no altitude: what the filter makes of the slope
+        r = np.empty((3, 3))
+        rotation_matrix(m["q_nv"], r)
+        gained = speed * period * r[2, 0]
+    v["height"] += gained
     if math.isfinite(e["yaw_rate"]):
         v["turning"] += speed * e["yaw_rate"] ** 2 * period
     v["distance"] += speed * period
@@ -2021,7 +2030,10 @@ def find_faults(p, c, a, f, e, events, evidence, count):
     long_stuck = stuck > p["fault_stuck_time"]
     saturated = f["saturation"] > p["fault_saturation_time"]
     if math.isfinite(a["solved_time"]):
-        mirrored = a["mirror"] > p["fault_mirror"] * noise_ratio(p, a)
+        threshold = p["fault_mirror"] * min(noise_ratio(p, a), 4.0)  # contradictions of mirrored axes are noise, too
+        if f["reported"] & (1 << LEFT_HANDED):
+            threshold = p["fault_mirror_doubt"]
+        mirrored = a["mirror"] > threshold
         count = report_fault(p, f, LEFT_HANDED, mirrored, np.nan, events, evidence, count)
     count = report_fault(p, f, STUCK_AXIS, long_stuck, e["t"] - stuck, events, evidence, count)
     return report_fault(p, f, SATURATED, saturated, np.nan, events, evidence, count)

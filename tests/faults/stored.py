@@ -7,6 +7,9 @@ import sqlalchemy as sa
 from storage.database import Database
 from storage.models import alerts, chunks, devices, estimates, installations, mounts, sessions
 
+TIMES_OF_DAY = ("at", "since")
+"""of an alert's data"""
+
 
 def of_device(database: Database, device_id: str) -> dict[str, list[Any]]:
     """Give the rows of a device without the times of day, which are never the same."""
@@ -35,4 +38,8 @@ def of_device(database: Database, device_id: str) -> dict[str, list[Any]]:
                 alerts.c.device_pk == pk
             ),
         }
-        return {name: [tuple(row) for row in tx.connection.execute(query)] for name, query in queries.items()}
+        rows = {name: [tuple(row) for row in tx.connection.execute(query)] for name, query in queries.items()}
+    rows["alerts"] = [
+        (*row[:-1], {k: v for k, v in row[-1].items() if k not in TIMES_OF_DAY}) for row in rows["alerts"]
+    ]
+    return rows
