@@ -54,7 +54,7 @@ def test_it_is_found_once_and_described(sensor: str, seed: int, angle: float, ax
     off = np.arccos(np.clip(change.axis @ axis, -1, 1))
     assert off < np.arctan2(4, angle) + 2 * DEGREE, "an error of 4 deg of the new mounting turns a small change's axis"
     assert change.since is not None
-    assert abs(change.since - TURNED_AT) < 90
+    assert abs(change.since - TURNED_AT) < 120
     assert change.since < change.t
     assert change.quaternion is not None
     assert change.sigma is not None
@@ -124,7 +124,7 @@ def test_a_change_in_a_later_session_is_told_in_its_time() -> None:
     assert len(changes(outcome)) == 1
     change = changes(outcome)[0]
     assert change.since is not None
-    assert abs(change.since - TURNED_AT) < 90
+    assert abs(change.since - TURNED_AT) < 120
     assert change.evidence is not None
     assert np.all(np.diff(change.evidence.t) > 0)
     assert change.evidence.t[-1] == pytest.approx(change.t, abs=1)
