@@ -15,7 +15,15 @@ export function LevelStart({ id }: { id: string }) {
   };
   return (
     <div className={css.level}>
-      <Button variant="default" leftSection={<SquareParking size={20} aria-hidden />} onClick={open}>
+      <Button
+        variant="default"
+        maw="100%"
+        h="auto"
+        mih="2.75rem"
+        styles={{ label: { whiteSpace: "normal" } }}
+        leftSection={<SquareParking size={20} aria-hidden />}
+        onClick={open}
+      >
         Vehicle stands on level ground
       </Button>
       {level.isSuccess && <Taken />}
