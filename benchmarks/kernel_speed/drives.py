@@ -1,4 +1,4 @@
-"""Devices that have been driving for some minutes, and the epochs of their next minute."""
+"""Devices that have been driving for a minute or more, and the epochs of their next minute."""
 
 from typing import NamedTuple
 
@@ -62,7 +62,7 @@ def _minutes(samples: Samples) -> list[Chunk]:
 def _choose(chunks: list[Chunk]) -> Drive | None:
     stages = [core.status(core.DEFAULT, chunk.state).stage for chunk in chunks]
     watching = [int(chunk.state.change["state"][0]) == _kernel.WATCHING for chunk in chunks]
-    whole = range(2, len(chunks) - 1)
+    whole = range(1, len(chunks) - 1)
     driven = [i for i in whole if len(collect_epochs(chunks[i])) >= FEWEST_EPOCHS]
     settling = [i for i in driven if stages[i] >= Stage.SETTLING and stages[i + 1] < Stage.CONFIRMED]
     confirmed = [i for i in driven if watching[i] and watching[i + 1] and stages[i] == stages[i + 1] == Stage.CONFIRMED]
