@@ -1,6 +1,5 @@
 import signal
 import socket
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -14,8 +13,13 @@ from api.commands.demo_fleet import FLEET, drives, pieces
 from tests.cli import livella
 
 
-def left_behind() -> set[Path]:
-    return set(Path(tempfile.gettempdir()).glob("livella-demo-*"))
+@pytest.fixture
+def temporary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder for temporary files of this test's commands alone, because others run beside it."""
+    folder = tmp_path / "temporary"
+    folder.mkdir()
+    monkeypatch.setenv("TMPDIR", str(folder))
+    return folder
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 120.0) -> None:
@@ -27,8 +31,8 @@ def wait_until(condition: Callable[[], bool], seconds: float = 120.0) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM])
-def test_the_fleet_is_on_the_road_until_the_demo_is_ended(tmp_path: Path, ending: int) -> None:
-    before, port = left_behind(), livella.free_port()
+def test_the_fleet_is_on_the_road_until_the_demo_is_ended(tmp_path: Path, temporary: Path, ending: int) -> None:
+    port = livella.free_port()
     url = f"http://127.0.0.1:{port}"
     with livella.running("demo", "--port", port, log=tmp_path / "log") as demo:
         demo.wait_for(f"{url}/readyz")
@@ -46,19 +50,18 @@ def test_the_fleet_is_on_the_road_until_the_demo_is_ended(tmp_path: Path, ending
             wait_until(lambda: {"waiting", "confirmed"} < {d["stage"] for d in devices()})
         assert demo.end(ending) == 0, demo.output()
         assert "Traceback" not in demo.output()
-    assert left_behind() == before
+    assert not list(temporary.glob("livella-demo-*"))
 
 
 @pytest.mark.slow
-def test_a_port_that_is_taken() -> None:
+def test_a_port_that_is_taken(temporary: Path) -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
-        before = left_behind()
         done = livella.run("demo", "--port", taken.getsockname()[1])
     assert done.status != 0
     assert "address already in use" in done.err.lower()
-    assert left_behind() == before
+    assert not list(temporary.glob("livella-demo-*"))
 
 
 @pytest.mark.parametrize("vehicle", FLEET, ids=lambda vehicle: vehicle.device_id)
