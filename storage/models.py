@@ -89,6 +89,10 @@ api_keys = sa.Table(
     _device(index=True),
     sa.Column("source", sa.String(16), nullable=False),
     sa.Column("created_at", Instant, nullable=False),
+    sa.Column("prefix", sa.String(16)),
+    sa.Column("last_used_at", Instant),
+    sa.Column("expires_at", Instant),
+    sa.Column("created_by", NAME),
     sqlite_autoincrement=True,
 )
 
@@ -138,8 +142,9 @@ installations = sa.Table(
     sa.Column("since_t", sa.Double),
     sa.Column("since_at", Instant, nullable=False),
     sa.Column("status", sa.JSON, nullable=False),
-    sa.Column("last_data_at", Instant),
+    sa.Column("last_data_at", Instant, index=True),
     sa.Column("revision", sa.BigInteger, nullable=False),
+    sa.Column("watch", sa.JSON(none_as_null=True)),
 )
 
 estimates = sa.Table(
@@ -190,6 +195,7 @@ alerts = sa.Table(
     sa.Column("resolved_by", NAME),
     sa.Column("resolve_note", sa.Text),
     sa.Index("ix_alerts_device_pk_pk", "device_pk", "pk"),
+    sa.Index("ix_alerts_state_pk", "state", "pk"),
     sqlite_autoincrement=True,
 )
 alert_unresolved = alerts.c.state != sa.literal_column("'resolved'")
@@ -214,4 +220,66 @@ events = sa.Table(
     sa.Column("created_at", Instant, nullable=False, index=True),
     sa.Index("ix_events_xact_pk", "xact", "pk"),
     sqlite_autoincrement=True,
+)
+
+webhooks = sa.Table(
+    "webhooks",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    sa.Column("url", sa.Text, nullable=False),
+    sa.Column("name", NAME, nullable=False),
+    sa.Column("kinds", sa.JSON(none_as_null=True)),
+    sa.Column("severities", sa.JSON(none_as_null=True)),
+    sa.Column("secret", sa.Text, nullable=False),
+    sa.Column("active", sa.Boolean, nullable=False),
+    sa.Column("created_at", Instant, nullable=False),
+    sa.Column("created_by", NAME),
+    sa.Column("failing_since", Instant),
+    sa.Column("last_success_at", Instant),
+    sqlite_autoincrement=True,
+)
+
+webhook_deliveries = sa.Table(
+    "webhook_deliveries",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    sa.Column("webhook_pk", BIG, sa.ForeignKey("webhooks.pk", ondelete="CASCADE"), nullable=False),
+    sa.Column("message_id", sa.String(64), nullable=False, unique=True),
+    sa.Column("type", sa.String(64), nullable=False),
+    sa.Column("device_id", DEVICE_ID),
+    sa.Column("payload", sa.Text, nullable=False),
+    sa.Column("state", sa.String(16), nullable=False),
+    sa.Column("attempts", sa.Integer, nullable=False),
+    sa.Column("created_at", Instant, nullable=False),
+    sa.Column("next_attempt_at", Instant),
+    sa.Column("last_attempt_at", Instant),
+    sa.Column("last_status", sa.Integer),
+    sa.Column("last_error", sa.Text),
+    sa.Column("duration_ms", sa.Integer),
+    sa.Index("ix_webhook_deliveries_webhook_pk_pk", "webhook_pk", "pk"),
+    sa.Index("ix_webhook_deliveries_state_next_attempt_at", "state", "next_attempt_at"),
+    sqlite_autoincrement=True,
+)
+
+audit = sa.Table(
+    "audit",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    sa.Column("at", Instant, nullable=False, index=True),
+    sa.Column("actor", NAME, nullable=False),
+    sa.Column("key_pk", BIG),
+    sa.Column("role", sa.String(16), nullable=False),
+    sa.Column("action", sa.String(64), nullable=False),
+    sa.Column("target", NAME),
+    sa.Column("detail", sa.JSON(none_as_null=True)),
+    sa.Column("request_id", sa.String(64)),
+    sqlite_autoincrement=True,
+)
+
+leases = sa.Table(
+    "leases",
+    metadata,
+    sa.Column("name", sa.String(64), primary_key=True),
+    sa.Column("holder", sa.String(64), nullable=False),
+    sa.Column("until", Instant, nullable=False),
 )
