@@ -119,10 +119,15 @@ def test_an_alert_is_sent_once(world: World, receiver: Receiver) -> None:
 
 
 def test_nothing_is_stored_for_an_alert_that_is_rolled_back(world: World) -> None:
-    with world.context.database.write() as tx:
-        finding = Finding("device_loose", "critical", "", {})
-        publishing.alert_changed(tx, alerts.raise_(tx, world.numbers["box-1"], finding, world.clock()), world.clock())
-        tx.connection.rollback()
+    def fail() -> None:
+        with world.context.database.write() as tx:
+            finding = Finding("device_loose", "critical", "", {})
+            alert = alerts.raise_(tx, world.numbers["box-1"], finding, world.clock())
+            publishing.alert_changed(tx, alert, world.clock())
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        fail()
     assert world.deliveries() == []
 
 
