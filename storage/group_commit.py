@@ -10,7 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from sqlalchemy.engine import Connection, Engine
-from sqlalchemy.exc import TimeoutError  # noqa: A004 - the one that is answered with 503
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import TimeoutError as BusyError
 
 from storage.file_lock import FileLock
 
@@ -43,7 +44,7 @@ class Group:
         try:
             self.connection.exec_driver_sql("ROLLBACK TO member")
             self.connection.exec_driver_sql("RELEASE member")
-        except Exception as error:  # SQLite has given up the whole transaction, on a full disk for one
+        except DBAPIError as error:  # SQLite has given up the whole transaction, on a full disk for one
             self.error = error
 
     def end(self) -> None:
@@ -78,7 +79,7 @@ class GroupCommit:
 
     @contextmanager
     def transaction(self, seconds: float) -> Iterator[Connection]:
-        """Open a transaction, durable when the block has ended without an error; `TimeoutError` when it is too busy."""
+        """Open a transaction, durable when the block ends without an error; SQLAlchemy's `TimeoutError` if busy."""
         self._take_turn(seconds)
         try:
             group = self._group = self._group or self._open(seconds)
@@ -94,26 +95,38 @@ class GroupCommit:
             free = self._turns.wait_for(lambda: not self._taken, seconds)
             self._waiting -= 1
             if not free:
-                raise TimeoutError("the database is busy")
+                raise BusyError("the database is busy")
             self._taken = True
 
     def _end_turn(self) -> None:
+        if not self._hand_on():
+            self._end_group()
+            self._free()
+
+    def _hand_on(self) -> bool:
+        """Leave the group to whoever waits; seen and done under one lock, or that one might give up in between."""
         group = self._group
-        if group is not None and (self._is_last() or group.size >= MOST or group.error is not None):
-            self._group = None
+        with self._turns:
+            if self._waiting == 0 or group is None or group.size >= MOST or group.error is not None:
+                return False
+            self._taken = False
+            self._turns.notify()
+            return True
+
+    def _end_group(self) -> None:
+        group, self._group = self._group, None
+        if group is not None:
             group.end()
             self._lock.release()
+
+    def _free(self) -> None:
         with self._turns:
             self._taken = False
             self._turns.notify()
 
-    def _is_last(self) -> bool:
-        with self._turns:
-            return self._waiting == 0
-
     def _open(self, seconds: float) -> Group:
         if not self._lock.acquire(seconds):
-            raise TimeoutError("the database is busy")
+            raise BusyError("the database is busy")
         try:
             connection = self._engine.connect()
         except BaseException:

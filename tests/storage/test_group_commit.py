@@ -3,8 +3,9 @@ import sqlite3
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 import sqlalchemy as sa
@@ -115,7 +116,7 @@ def test_when_sqlite_gives_up_the_transaction_everybody_is_told(database: Databa
                 meta.put(tx, f"x{n}", "1")
                 if n == 5:
                     tx.connection.exec_driver_sql("ROLLBACK")
-        except Exception:
+        except sa.exc.DBAPIError:
             told.append(n)
 
     with pytest.raises(sa.exc.OperationalError):
@@ -162,3 +163,36 @@ def test_processes_take_turns(tmp_path: Path) -> None:
     for process in processes:
         process.join()
     assert min(numbers) > 0.2 * max(numbers)
+
+
+class SlowCondition(threading.Condition):
+    """Lets others come between two uses of the lock."""
+
+    def __exit__(self, *error: Any) -> None:
+        super().__exit__(*error)
+        time.sleep(0.2)
+
+
+def test_nobody_is_left_waiting_when_the_one_behind_gives_up(
+    database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever hands its turn on relies on the next one to commit, which may give up at that very moment."""
+    assert database._group is not None
+    monkeypatch.setattr(database._group, "_turns", SlowCondition())
+    monkeypatch.setattr(database_module, "BUSY_TIMEOUT", 0.5)
+    inside = threading.Event()
+
+    def write(name: str, seconds: float) -> None:
+        with suppress(sa.exc.TimeoutError), database.write() as tx:
+            meta.put(tx, name, "1")
+            inside.set()
+            time.sleep(seconds)
+
+    threads = [threading.Thread(target=write, args=args, daemon=True) for args in (("x1", 0.4), ("x2", 0.0))]
+    threads[0].start()
+    assert inside.wait(10)
+    threads[1].start()
+    for thread in threads:
+        thread.join(10)
+        assert not thread.is_alive()
+    assert "x1" in facts(database)
