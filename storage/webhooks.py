@@ -31,8 +31,7 @@ class Webhook(NamedTuple):
 
 _select = sa.select(*(webhooks.c[name] for name in Webhook._fields))
 _find = _select.where(webhooks.c.pk == sa.bindparam("pk"))
-_active = _select.where(webhooks.c.active).order_by(webhooks.c.pk)
-_hold_active = _active.with_for_update(read=True, key_share=True)
+_hold_active = _select.where(webhooks.c.active).order_by(webhooks.c.pk).with_for_update(read=True, key_share=True)
 _newest = _select.order_by(webhooks.c.pk.desc()).limit(sa.bindparam("limit"))
 _before = _newest.where(webhooks.c.pk < sa.bindparam("before"))
 _count = sa.select(sa.func.count()).select_from(webhooks)
@@ -45,11 +44,6 @@ _remove = sa.delete(webhooks).where(webhooks.c.pk == sa.bindparam("pk"))
 def find(tx: ReadSession, pk: int) -> Webhook | None:
     """Find a webhook by its number."""
     return tx.one(Webhook, _find, pk=pk)
-
-
-def active(tx: ReadSession) -> list[Webhook]:
-    """Give the webhooks that are switched on."""
-    return tx.all(Webhook, _active)
 
 
 def hold_active(tx: WriteSession) -> list[Webhook]:

@@ -58,50 +58,55 @@ class Receiver:
         return self.calls
 
 
+class Server(ThreadingHTTPServer):
+    daemon_threads = True
+
+    def __init__(self, tls: ssl.SSLContext | None) -> None:
+        super().__init__(("127.0.0.1", 0), Handler)
+        if tls is not None:
+            self.socket = tls.wrap_socket(self.socket, server_side=True, do_handshake_on_connect=False)
+        scheme = "http" if tls is None else "https"
+        self.receiver = Receiver(f"{scheme}://127.0.0.1:{self.server_port}/hook")
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Stay quiet: clients may hang up."""
+
+
+class Handler(BaseHTTPRequestHandler):
+    server: Server
+
+    def do_POST(self) -> None:
+        body = self.rfile.read(int(self.headers["content-length"]))
+        headers = {name.lower(): value for name, value in self.headers.items()}
+        answer = self.server.receiver.take(Call(self.path, headers, body))
+        try:
+            self._say(answer)
+        except OSError:
+            self.close_connection = True
+
+    def _say(self, answer: Answer) -> None:
+        self.send_response(answer.status)
+        for name, value in answer.headers:
+            self.send_header(name, value)
+        self.end_headers()
+        while answer.drip_seconds:
+            self.wfile.write(b"x")
+            time.sleep(answer.drip_seconds)
+        for _ in range(answer.size // 65536):
+            self.wfile.write(bytes(65536))
+
+    def log_message(self, format: str, *args: Any) -> None:  # noqa: A002 - the name it has in the library
+        """Stay quiet."""
+
+
 @contextmanager
 def running_receiver(tls: ssl.SSLContext | None = None) -> Iterator[Receiver]:
     """Start a receiver and end it."""
-    holder: list[Receiver] = []
-
-    class Handler(BaseHTTPRequestHandler):
-        def do_POST(self) -> None:
-            body = self.rfile.read(int(self.headers["content-length"]))
-            headers = {name.lower(): value for name, value in self.headers.items()}
-            answer = holder[0].take(Call(self.path, headers, body))
-            try:
-                self._say(answer)
-            except OSError:
-                self.close_connection = True
-
-        def _say(self, answer: Answer) -> None:
-            self.send_response(answer.status)
-            for name, value in answer.headers:
-                self.send_header(name, value)
-            self.end_headers()
-            while answer.drip_seconds:
-                self.wfile.write(b"x")
-                time.sleep(answer.drip_seconds)
-            for _ in range(answer.size // 65536):
-                self.wfile.write(bytes(65536))
-
-        def log_message(self, format: str, *args: Any) -> None:  # noqa: A002
-            """Stay quiet."""
-
-    class Server(ThreadingHTTPServer):
-        daemon_threads = True
-
-        def handle_error(self, request: Any, client_address: Any) -> None:
-            """Stay quiet: clients may hang up."""
-
-    server = Server(("127.0.0.1", 0), Handler)
-    if tls is not None:
-        server.socket = tls.wrap_socket(server.socket, server_side=True, do_handshake_on_connect=False)
-    scheme = "http" if tls is None else "https"
-    holder.append(Receiver(f"{scheme}://127.0.0.1:{server.server_port}/hook"))
+    server = Server(tls)
     thread = threading.Thread(target=server.serve_forever, args=(0.02,), daemon=True)
     thread.start()
     try:
-        yield holder[0]
+        yield server.receiver
     finally:
         server.shutdown()
         server.server_close()

@@ -227,7 +227,9 @@ def test_not_more_than_can_be_looked_at(api: Api, monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(webhooks, "MOST", 1)
     api.post("/webhooks", DRAFT, 201)
-    api.call("POST", "/webhooks", 409, json=DRAFT)
+    refused = api.call("POST", "/webhooks", 409, json=DRAFT).json()
+    assert refused["detail"] == "There are 1 webhooks, which is as many as there may be."
+    assert len(api.get("/webhooks")["items"]) == 1
 
 
 @pytest.mark.slow

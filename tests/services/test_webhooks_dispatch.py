@@ -343,6 +343,19 @@ def test_old_deliveries_are_removed_and_counted_while_they_wait(world: World) ->
     assert [delivery.state for delivery in world.deliveries()] == ["pending"]
 
 
+def test_what_still_waits_is_not_removed_however_old(world: World, receiver: Receiver) -> None:
+    receiver.answer = Answer(410)
+    world.alert("box-1")
+    world.alert("box-1")
+    world.dispatch()
+    world.clock.advance(91 * DAY)
+    housekeeping.tidy(world.context)
+    receiver.answer = Answer()
+    webhooks.edit(world.context, world.pk, {"active": True})
+    assert world.dispatch() == 1
+    assert [delivery.state for delivery in world.deliveries()] == ["delivered"]
+
+
 def test_a_removed_webhook_takes_its_deliveries_along(world: World) -> None:
     world.alert("box-1")
     webhooks.remove(world.context, world.pk)
