@@ -43,11 +43,16 @@ _select = sa.select(*(_table.c[name] for name in Delivery._fields))
 _of_webhook = _table.c.webhook_pk == sa.bindparam("webhook_pk")
 _changed_webhook = _table.c.webhook_pk == sa.bindparam("of_webhook")
 _unclaimed = sa.or_(_table.c.claimed_until.is_(None), _table.c.claimed_until <= _now)
-_is_first = ~sa.exists().where(
-    _earlier.c.webhook_pk == _table.c.webhook_pk,
-    _earlier.c.device_id == _table.c.device_id,
-    _earlier.c.pk < _table.c.pk,
-    _earlier.c.state == sa.literal_column("'pending'"),
+_is_first = _table.c.pk == (  # not NOT EXISTS, which PostgreSQL may compute for all deliveries at once
+    sa.select(_earlier.c.pk)
+    .where(
+        _earlier.c.webhook_pk == _table.c.webhook_pk,
+        _earlier.c.device_id == _table.c.device_id,
+        _earlier.c.state == sa.literal_column("'pending'"),
+    )
+    .order_by(_earlier.c.pk)
+    .limit(1)
+    .scalar_subquery()
 )
 _due = (delivery_pending, _table.c.next_attempt_at <= _now, _unclaimed, _is_first)
 _next = _select.where(_of_webhook, *_due).order_by(_table.c.next_attempt_at, _table.c.pk).limit(1)

@@ -273,6 +273,14 @@ sa.Index(
     sqlite_where=delivery_pending,
     postgresql_where=delivery_pending,
 )
+sa.Index(
+    "ix_webhook_deliveries_due",
+    webhook_deliveries.c.webhook_pk,
+    webhook_deliveries.c.next_attempt_at,
+    webhook_deliveries.c.pk,
+    sqlite_where=delivery_pending,
+    postgresql_where=delivery_pending,
+)
 
 audit = sa.Table(
     "audit",

@@ -90,14 +90,13 @@ def _deliveries() -> None:
     )
     op.create_index("ix_webhook_deliveries_webhook_pk_pk", "webhook_deliveries", ["webhook_pk", "pk"], unique=False)
     pending = sa.text("state = 'pending'")
-    op.create_index(
-        "ix_webhook_deliveries_pending",
-        "webhook_deliveries",
-        ["webhook_pk", "device_id", "pk"],
-        unique=False,
-        sqlite_where=pending,
-        postgresql_where=pending,
-    )
+    for name, columns in (
+        ("ix_webhook_deliveries_pending", ["webhook_pk", "device_id", "pk"]),
+        ("ix_webhook_deliveries_due", ["webhook_pk", "next_attempt_at", "pk"]),
+    ):
+        op.create_index(
+            name, "webhook_deliveries", columns, unique=False, sqlite_where=pending, postgresql_where=pending
+        )
     op.create_index("ix_webhook_deliveries_created_at", "webhook_deliveries", ["created_at"], unique=False)
 
 

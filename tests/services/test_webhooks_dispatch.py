@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from pydantic import SecretStr
+from sqlalchemy.dialects import sqlite
 from standardwebhooks import Webhook as Library
 
 from api import schemas
@@ -16,7 +17,7 @@ from api.services.context import Context
 from api.services.webhooks_dispatch import CLAIM, Dispatcher
 from api.services.webhooks_sending import Sender, wait_asked_for
 from api.settings import Settings
-from storage import alerts, devices
+from storage import alerts, deliveries, devices
 from storage import webhooks as stored
 from storage.alerts import Finding
 from storage.deliveries import Delivery
@@ -363,3 +364,16 @@ def test_a_removed_webhook_takes_its_deliveries_along(world: World) -> None:
     world.alert("box-1")
     with world.context.database.read() as tx:
         assert (stored.count(tx), webhooks.backlog(tx)) == (0, 0)
+
+
+def test_the_next_delivery_is_found_by_its_index_however_many_wait(world: World) -> None:
+    if not world.context.database.is_sqlite:
+        pytest.skip("PostgreSQL chooses its plan by what is in the table")
+    compiled = deliveries._next.compile(dialect=sqlite.dialect(), compile_kwargs={"render_postcompile": True})
+    with world.context.database.read() as tx:
+        values = tuple(0 for _ in compiled.positiontup or ())
+        plan = tx.connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {compiled}", values).fetchall()
+    steps = " ".join(row[-1] for row in plan)
+    assert "ix_webhook_deliveries_due" in steps
+    assert "ix_webhook_deliveries_pending" in steps
+    assert "TEMP B-TREE" not in steps
