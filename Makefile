@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel fuzz clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -70,6 +70,11 @@ bench-accuracy: setup  ## accuracy, honesty and alarms on thousands of drives: w
 
 bench-kernel: setup  ## speed beside numpy and filterpy: writes docs/performance.md
 	$(BIN)/python benchmarks/kernel.py
+
+FUZZ_SECONDS ?= 80
+fuzz: setup  ## every parser against made-up bytes, 11 minutes; FUZZ_SECONDS for each of the eight. Findings in out/fuzz
+	$(BIN)/python -c "import atheris" 2>/dev/null || $(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3.0,<4'
+	$(BIN)/python -m tests.fuzz.run all $(FUZZ_SECONDS)
 
 clean:
 	rm -rf .venv web/node_modules api/static build

@@ -84,11 +84,16 @@ class DelimitedText:
         return {name: table[name].to_numpy() for name in wanted}
 
     def cell(self, row: int, column: str) -> Cell:
-        """Give line number and text of a cell, for a message."""
+        """Give line number and text of a cell, for a message; a column that is not there is empty everywhere."""
         for index, (line, text) in enumerate(self._rows()):
             if index == row:
-                return Cell(line, self._split(text)[self.names.index(column)].decode(errors="replace").strip())
+                return Cell(line, self._text(text, column))
         raise IndexError(row)
+
+    def _text(self, line: bytes, column: str) -> str:
+        if column not in self.names:
+            return ""
+        return self._split(line)[self.names.index(column)].decode(errors="replace").strip()
 
     def _quick(self, wanted: tuple[str, ...]) -> pa.Table:
         return pa.csv.read_csv(

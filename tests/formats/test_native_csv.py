@@ -302,3 +302,15 @@ def test_a_good_log_with_any_bytes_written_over_it_is_read_or_refused(place: int
     body[place : place + len(damage)] = damage
     with suppress(FormatError):  # and nothing else
         assert len(read(bytes(body)).samples().samples)
+
+
+def test_a_fix_without_a_position_names_the_column_that_is_not_there() -> None:
+    found = problem("t,ax,ay,az,fix,lat,lon\n0,0,0,9.8,1,,\n")
+    assert (found.line, found.column) == (2, "speed")
+    assert "an empty cell" in found.message
+
+
+def test_names_cannot_steer_a_terminal_or_begin_a_line() -> None:
+    (notice,) = read("t,ax,ay,az,fix,speed,course,\x1b[31m\n0,0,0,9.8,1,3,90,\n").notices
+    assert notice.isprintable()
+    assert "\\x1b[31m" in notice
