@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel fuzz clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel fuzz fuzz-api clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -75,6 +75,9 @@ FUZZ_SECONDS ?= 80
 fuzz: setup  ## every parser against made-up bytes, 11 minutes; FUZZ_SECONDS for each of the eight. Findings in out/fuzz
 	$(BIN)/python -c "import atheris" 2>/dev/null || $(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3.0,<4'
 	$(BIN)/python -m tests.fuzz.run all $(FUZZ_SECONDS)
+
+fuzz-api: setup  ## sound and wrong requests made from the OpenAPI document, in every role, on both databases: a quarter of an hour
+	LIVELLA_API_EXAMPLES=$${LIVELLA_API_EXAMPLES:-500} pytest -q tests/contract -n 2
 
 clean:
 	rm -rf .venv web/node_modules api/static build
