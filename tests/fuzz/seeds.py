@@ -49,6 +49,12 @@ def _state() -> bytes:
     return snapshot.encode(core.begin_session(core.DEFAULT, core.initial_state(core.DEFAULT)))
 
 
+CLOCK_TOO_COARSE = b"\x001\t0\t7.64\t5.1\t24\t0\t9\t1\t1\t2\t100\n2\t1" + b"3" * 45 + b"\t6\t1\t4\t1\t91\t1\t1\t2\t1"
+INTERVAL_TOO_SHORT = b"\0" + b"".join(
+    b"%d\t%.7f\t7.%d\t45\t240\t%d\t90\t1\t1\t2\t100\n" % (n, n * 1e-4, min(n, 5), 40 if n < 5 else 1) for n in range(9)
+)
+
+
 def _encoded(name: str, body: bytes) -> bytes:
     return bytes([ENCODINGS.index(name)]) + body
 
@@ -69,6 +75,8 @@ SEEDS: dict[str, list[bytes]] = {
         b"",
         b"\0",
         b"\0" + THESIS,
+        CLOCK_TOO_COARSE,
+        INTERVAL_TOO_SHORT,
         b"\1" + THESIS.replace(b"\t", b";"),
         b"\2" + THESIS.replace(b"\t", b"  "),
     ],
