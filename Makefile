@@ -32,12 +32,13 @@ demo: setup  ## the service with a simulated fleet being calibrated
 serve: setup  ## the service on port 8000
 	livella serve
 
-lint: setup  ## format, lint, types, layers
+lint: setup  ## format, lint, types, layers, known vulnerabilities
 	ruff format --check .
 	ruff check .
 	mypy
 	lint-imports
 	cd web && npm run check
+	python tools/audit.py
 
 format: setup
 	ruff format .
