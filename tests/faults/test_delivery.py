@@ -18,7 +18,7 @@ from tests.service import Api, Device
 
 WAITING_LIMIT = 600.0
 """s, the service's own"""
-EXAMPLES = {"sqlite": 25, "postgresql": 8}
+EXAMPLES = {"sqlite": 15, "postgresql": 8}
 
 
 class Attempt(NamedTuple):
