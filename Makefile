@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel fuzz fuzz-api clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -33,12 +33,13 @@ demo: setup  ## the service with a simulated fleet being calibrated
 serve: setup  ## the service on port 8000
 	livella serve
 
-lint: setup  ## format, lint, types, layers
+lint: setup  ## format, lint, types, layers, known vulnerabilities
 	ruff format --check .
 	ruff check .
 	mypy
 	lint-imports
 	cd web && npm run check
+	python tools/audit.py
 
 format: setup
 	ruff format .
@@ -71,6 +72,14 @@ bench-accuracy: setup  ## accuracy, honesty and alarms on thousands of drives: w
 
 bench-kernel: setup  ## speed beside numpy and filterpy: writes docs/performance.md
 	$(BIN)/python benchmarks/kernel.py
+
+FUZZ_SECONDS ?= 80
+fuzz: setup  ## every parser against made-up bytes, 11 minutes; FUZZ_SECONDS for each of the eight. Findings in out/fuzz
+	$(BIN)/python -c "import atheris" 2>/dev/null || $(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3.0,<4'
+	$(BIN)/python -m tests.fuzz.run all $(FUZZ_SECONDS)
+
+fuzz-api: setup  ## sound and wrong requests made from the OpenAPI document, in every role, on both databases: a quarter of an hour
+	LIVELLA_API_EXAMPLES=$${LIVELLA_API_EXAMPLES:-500} pytest -q tests/contract -n 2
 
 clean:
 	rm -rf .venv web/node_modules api/static build

@@ -11,6 +11,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.exc import DBAPIError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
 
 from api import schemas
 from api.formats import FormatError
@@ -104,6 +105,11 @@ def _database_error(request: Request, error: DBAPIError | PoolTimeoutError) -> J
     return _unexpected(request, error)
 
 
+def _hung_up(_: Request, __: ClientDisconnect) -> JSONResponse:
+    """Answer a caller who is gone, for what counts the answers; no fault of ours."""
+    return problem(HTTPStatus.BAD_REQUEST, "The request broke off", "Its body did not arrive whole.", "broken-off")
+
+
 def _unexpected(_: Request, __: Exception) -> JSONResponse:
     return problem(500, "Internal error", "The fault is in the service, not in the request; it was logged.")
 
@@ -114,6 +120,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(FormatError, _format_error)  # type: ignore[arg-type]
     app.add_exception_handler(HTTPException, _http_error)  # type: ignore[arg-type]
     app.add_exception_handler(RequestValidationError, _validation_error)  # type: ignore[arg-type]
+    app.add_exception_handler(ClientDisconnect, _hung_up)  # type: ignore[arg-type]
     app.add_exception_handler(DBAPIError, _database_error)  # type: ignore[arg-type]
     app.add_exception_handler(PoolTimeoutError, _database_error)  # type: ignore[arg-type]
     app.add_exception_handler(Exception, _unexpected)

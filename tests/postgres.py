@@ -6,7 +6,7 @@ import shutil
 import socket
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
@@ -28,9 +28,19 @@ def find_program(name: str) -> str | None:
 class Server:
     """A running server on 127.0.0.1."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, control: Callable[..., None]) -> None:
         self.port = port
+        self._control = control
         self._template: str | None = None
+
+    def start(self) -> None:
+        """Start it and wait until it answers."""
+        options = f"-p {self.port} -c listen_addresses=127.0.0.1 -c unix_socket_directories='' -c max_connections=200"
+        self._control("-o", options, "start")
+
+    def stop(self) -> None:
+        """End it at once, as a crash does; what was committed is in its log."""
+        self._control("-m", "immediate", "stop")
 
     def url(self, name: str) -> str:
         return f"postgresql://livella@127.0.0.1:{self.port}/{name}"
@@ -71,15 +81,19 @@ def running_server() -> Iterator[Server]:
     directory = Path(tempfile.mkdtemp(prefix="livella-postgres-"))
     if user is not None:
         shutil.chown(directory, user)
-    data, port = str(directory / "data"), _free_port()
-    options = f"-p {port} -c listen_addresses=127.0.0.1 -c unix_socket_directories='' -c max_connections=200"
+    data = str(directory / "data")
+
+    def control(*arguments: str) -> None:
+        _run(user, pg_ctl, "-D", data, "-w", "-l", str(directory / "log"), *arguments)
+
+    server = Server(_free_port(), control)
     try:
         _run(user, initdb, "-D", data, "-U", "livella", "-A", "trust", "-E", "UTF8", "--no-sync")
-        _run(user, pg_ctl, "-D", data, "-w", "-l", str(directory / "log"), "-o", options, "start")
+        server.start()
         try:
-            yield Server(port)
+            yield server
         finally:
-            _run(user, pg_ctl, "-D", data, "-w", "-m", "immediate", "stop")
+            server.stop()
     finally:
         shutil.rmtree(directory)
 

@@ -155,3 +155,7 @@ def test_two_slices_hold_everything_once(cut: int) -> None:
     np.testing.assert_array_equal(np.concatenate([first.fix, second.fix]), whole.fix)
     for part in (first, second):  # a slice would itself get past the border
         Samples.make(*columns(part))
+
+
+def test_readings_whose_sum_is_not_finite_are_finite() -> None:
+    assert len(Samples.make([-1e308, 1e308], [[1e308, 1e308, 1e308], [0.0, 0.0, 9.8]])) == 2
