@@ -66,7 +66,6 @@ _devices_waiting = (
     .join(devices)
     .where(chunk_waits, chunks.c.received_at <= sa.bindparam("moment"))
 )
-_forget = sa.delete(chunks).where(chunks.c.received_at < sa.bindparam("before"), chunks.c.state == APPLIED)
 
 
 def find(tx: ReadSession, session_pk: int, seq: int) -> Receipt | None:
@@ -104,8 +103,3 @@ def sessions_waiting(tx: ReadSession, device_pk: int) -> list[int]:
 def devices_waiting_since(tx: ReadSession, moment: datetime) -> list[str]:
     """Give the ids of the devices that have a chunk waiting since `moment` or longer."""
     return tx.all(str, _devices_waiting, moment=moment)
-
-
-def forget(tx: WriteSession, before: datetime) -> int:
-    """Remove the receipts of chunks that came in before a moment and were applied."""
-    return tx.execute(_forget, before=before).rowcount

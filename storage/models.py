@@ -151,15 +151,28 @@ estimates = sa.Table(
     "estimates",
     metadata,
     sa.Column("pk", BIG, primary_key=True),
-    _session(nullable=False),
+    _device(nullable=False),
+    sa.Column("session_pk", BIG, nullable=False),  # no foreign key, as above
     sa.Column("t_first", sa.Double, nullable=False),
     sa.Column("t_last", sa.Double, nullable=False),
     sa.Column("size", sa.Integer, nullable=False),
     sa.Column("changes", sa.Integer, nullable=False),
     sa.Column("rows", sa.LargeBinary, nullable=False),
     sa.Column("received_at", Instant, nullable=False, index=True),
-    sa.Index("ix_estimates_session_pk_pk", "session_pk", "pk"),
+    sa.Index("ix_estimates_device_pk_received_at", "device_pk", "received_at"),
     sqlite_autoincrement=True,
+)
+
+estimates_coarse = sa.Table(
+    "estimates_coarse",
+    metadata,
+    _device(primary_key=True),
+    sa.Column("day", sa.Integer, primary_key=True, autoincrement=False, index=True),
+    sa.Column("session_pk", BIG, primary_key=True, autoincrement=False),  # no foreign key, as above
+    sa.Column("t_first", sa.Double, nullable=False),
+    sa.Column("t_last", sa.Double, nullable=False),
+    sa.Column("sketch", sa.LargeBinary, nullable=False),  # before `rows`: SQLite reads a long row only as far as asked
+    sa.Column("rows", sa.LargeBinary, nullable=False),
 )
 
 mounts = sa.Table(

@@ -139,7 +139,7 @@ def _refuse_late(calibration: Calibration, session: Session, seq: int) -> None:
         raise SessionEndedError("A newer session of this device has begun; do not send this chunk again.")
     if seq < session.next_seq:
         raise SequencePassedError(
-            f"The gap at chunk {seq} was declared lost and later chunks were applied; do not send this chunk again."
+            f"Chunk {seq} came in long ago, or was declared lost, and later ones were applied; do not send it again."
         )
 
 

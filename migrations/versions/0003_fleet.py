@@ -1,4 +1,7 @@
-"""What a fleet needs: expiring keys, webhooks with their deliveries, an audit trail, rules' memory, leases."""
+"""What a fleet needs: expiring keys, webhooks with their deliveries, an audit trail, rules' memory, leases.
+
+History is found by device and time from now on, however many sessions a device has had, and ages into coarse history.
+"""
 
 import sqlalchemy as sa
 from alembic import op
@@ -22,7 +25,9 @@ INDEXES = (
     ("ix_alerts_state_pk", "alerts", ["state", "pk"]),
     ("ix_installations_last_data_at", "installations", ["last_data_at"]),
 )
-"""Columns and indexes for tables that are there; columns never in a batch, see 0002."""
+"""Columns and indexes for tables that are there; in a batch only where nothing refers to the table, see 0002."""
+AUTOINCREMENT = {"sqlite_autoincrement": True}
+"""SQLite's copy of a table has to be told."""
 
 
 def upgrade() -> None:
@@ -33,6 +38,7 @@ def upgrade() -> None:
     _webhooks()
     _deliveries()
     _audit()
+    _history()
     op.create_table(
         "leases",
         sa.Column("name", sa.String(64), nullable=False),
@@ -119,9 +125,48 @@ def _audit() -> None:
     op.create_index("ix_audit_at", "audit", ["at"], unique=False)
 
 
+def _history() -> None:
+    op.add_column("estimates", sa.Column("device_pk", BIG, nullable=True))
+    op.execute(
+        "UPDATE estimates SET device_pk = (SELECT device_pk FROM sessions WHERE sessions.pk = estimates.session_pk)"
+    )
+    op.drop_index("ix_estimates_session_pk_pk", table_name="estimates")
+    with op.batch_alter_table("estimates", table_kwargs=AUTOINCREMENT) as table:
+        table.drop_constraint("fk_estimates_session_pk", type_="foreignkey")
+        table.alter_column("device_pk", existing_type=BIG, nullable=False)
+        table.create_foreign_key("fk_estimates_device_pk", "devices", ["device_pk"], ["pk"], ondelete="CASCADE")
+    op.create_index("ix_estimates_device_pk_received_at", "estimates", ["device_pk", "received_at"], unique=False)
+    op.create_table(
+        "estimates_coarse",
+        sa.Column("device_pk", BIG, nullable=False),
+        sa.Column("day", sa.Integer(), autoincrement=False, nullable=False),
+        sa.Column("session_pk", BIG, autoincrement=False, nullable=False),
+        sa.Column("t_first", sa.Double(), nullable=False),
+        sa.Column("t_last", sa.Double(), nullable=False),
+        sa.Column("sketch", sa.LargeBinary(), nullable=False),
+        sa.Column("rows", sa.LargeBinary(), nullable=False),
+        sa.ForeignKeyConstraint(
+            ["device_pk"], ["devices.pk"], name="fk_estimates_coarse_device_pk", ondelete="CASCADE"
+        ),
+        sa.PrimaryKeyConstraint("device_pk", "day", "session_pk", name="pk_estimates_coarse"),
+    )
+    op.create_index("ix_estimates_coarse_day", "estimates_coarse", ["day"], unique=False)
+
+
+def _history_undone() -> None:
+    op.drop_table("estimates_coarse")
+    op.drop_index("ix_estimates_device_pk_received_at", table_name="estimates")
+    with op.batch_alter_table("estimates", table_kwargs=AUTOINCREMENT) as table:
+        table.drop_constraint("fk_estimates_device_pk", type_="foreignkey")
+        table.drop_column("device_pk")
+        table.create_foreign_key("fk_estimates_session_pk", "sessions", ["session_pk"], ["pk"], ondelete="CASCADE")
+    op.create_index("ix_estimates_session_pk_pk", "estimates", ["session_pk", "pk"], unique=False)
+
+
 def downgrade() -> None:
     for table in ("leases", "audit", "webhook_deliveries", "webhooks"):
         op.drop_table(table)
+    _history_undone()
     for name, table, _ in reversed(INDEXES):
         op.drop_index(name, table_name=table)
     for table, name, _ in reversed(ADDED):

@@ -11,7 +11,7 @@ from pydantic import SecretStr
 from standardwebhooks import Webhook as Library
 
 from api import schemas
-from api.services import fleet, housekeeping, publishing, webhooks, webhooks_queue
+from api.services import fleet, publishing, retention, webhooks, webhooks_queue
 from api.services.context import Context
 from api.services.webhooks_dispatch import CLAIM, Dispatcher
 from api.services.webhooks_sending import Sender, wait_asked_for
@@ -339,7 +339,7 @@ def test_old_deliveries_are_removed_and_counted_while_they_wait(world: World) ->
         assert webhooks.backlog(tx) == 0
     world.clock.advance(91 * DAY)
     world.alert("box-1")
-    housekeeping.tidy(world.context)
+    retention.tidy(world.context)
     assert [delivery.state for delivery in world.deliveries()] == ["pending"]
 
 
