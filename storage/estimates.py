@@ -14,17 +14,12 @@ from storage.database import ReadSession, WriteSession
 from storage.models import Instant, estimates, microseconds, sessions
 
 
-class Mark(NamedTuple):
-    """What is known of a block without reading it."""
+class Extent(NamedTuple):
+    """How much there is in a period."""
 
-    pk: int
-    session_pk: int
-    t_first: float
-    t_last: float
-    size: int
-    """rows"""
-    changes: int
-    """rows whose stage differs from that of the row before"""
+    seconds: float
+    """of device time"""
+    rows: int
 
 
 class Block(NamedTuple):
@@ -44,29 +39,61 @@ class OldBlock(NamedTuple):
     rows: bytes
 
 
+Period = tuple[datetime | None, datetime | None]
+"""First and last moment, None: open."""
 SLACK = 1_000_000
 """us added to a period when blocks are looked for, so that rounding loses none"""
+EVER = 2**62
+"""us, longer ago and later than anything"""
+
+
+def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[Any]:
+    """Time of a column on the session's clock, us since 1970."""
+    return sa.type_coerce(sessions.c.started_at, sa.BigInteger) + column * 1e6
+
 
 _received_at = estimates.c.received_at
 _before = sa.bindparam("before", type_=Instant)
-_blocks_of = sessions.c.pk == estimates.c.session_pk
+_of_session = sessions.c.pk == estimates.c.session_pk
+_start, _end = (sa.bindparam(name, type_=sa.BigInteger) for name in ("start", "end"))
+_in_period = (
+    estimates.c.device_pk == sa.bindparam("device_pk"),
+    sa.type_coerce(_received_at, sa.BigInteger) >= _start,
+    _utc(estimates.c.t_last) >= _start,
+    _utc(estimates.c.t_first) <= _end,
+)
 _add = sa.insert(estimates)
-_marks = (
-    sa.select(*(estimates.c[name] for name in Mark._fields))
-    .join_from(estimates, sessions, _blocks_of)
-    .where(estimates.c.device_pk == sa.bindparam("device_pk"))
+_extent = (
+    sa.select(
+        sa.func.coalesce(sa.func.sum(estimates.c.t_last - estimates.c.t_first), 0.0),
+        sa.func.coalesce(sa.func.sum(estimates.c.size), 0),
+    )
+    .join_from(estimates, sessions, _of_session)
+    .where(*_in_period)
+)
+_pks = sa.select(estimates.c.pk).join_from(estimates, sessions, _of_session).where(*_in_period)
+_slot = sa.cast(estimates.c.t_first / sa.bindparam("spacing", type_=sa.Double), sa.BigInteger)
+_chosen = sa.union(
+    _pks.with_only_columns(sa.func.min(estimates.c.pk)).group_by(estimates.c.session_pk, _slot),
+    _pks.with_only_columns(sa.func.max(estimates.c.pk)),
+    _pks.where(estimates.c.changes > 0),
+)
+_all_blocks = (
+    sa.select(sessions.c.name, sessions.c.started_at, estimates.c.rows)
+    .join_from(estimates, sessions, _of_session)
+    .where(*_in_period)
     .order_by(estimates.c.pk)
 )
-_blocks = (
+_some_blocks = (
     sa.select(sessions.c.name, sessions.c.started_at, estimates.c.rows)
-    .join_from(estimates, sessions, _blocks_of)
-    .where(estimates.c.pk.in_(sa.bindparam("pks", expanding=True)))
+    .join_from(estimates, sessions, _of_session)
+    .where(estimates.c.pk.in_(_chosen))
     .order_by(estimates.c.pk)
 )
 _device_of_oldest = sa.select(estimates.c.device_pk).where(_received_at < _before).order_by(_received_at).limit(1)
 _old_blocks = (
     sa.select(estimates.c.pk, estimates.c.session_pk, sessions.c.started_at, estimates.c.rows)
-    .join_from(estimates, sessions, _blocks_of)
+    .join_from(estimates, sessions, _of_session)
     .where(estimates.c.device_pk == sa.bindparam("device_pk"), _received_at < _before)
     .order_by(_received_at, estimates.c.pk)
     .limit(sa.bindparam("limit"))
@@ -98,28 +125,28 @@ def add(
     )
 
 
-def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[Any]:
-    """Time of a column on the session's clock, us since 1970."""
-    return sa.type_coerce(sessions.c.started_at, sa.BigInteger) + column * 1e6
+def _values(period: Period) -> dict[str, int]:
+    start, end = period
+    return {
+        "start": -EVER if start is None else microseconds(start) - SLACK,
+        "end": EVER if end is None else microseconds(end) + SLACK,
+    }
 
 
-def marks(tx: ReadSession, device_pk: int, start: datetime | None, end: datetime | None) -> list[Mark]:
-    """Give the marks of the blocks that overlap [start, end], and perhaps their neighbours, as they came in."""
-    statement = _marks
-    if start is not None:
-        from_us = microseconds(start) - SLACK
-        statement = statement.where(
-            sa.type_coerce(_received_at, sa.BigInteger) >= from_us, _utc(estimates.c.t_last) >= from_us
-        )
-    if end is not None:
-        statement = statement.where(_utc(estimates.c.t_first) <= microseconds(end) + SLACK)
-    return tx.all(Mark, statement, device_pk=device_pk)
+def extent(tx: ReadSession, device_pk: int, period: Period) -> Extent:
+    """Tell how much there is in the blocks that overlap a period."""
+    return tx.one(Extent, _extent, device_pk=device_pk, **_values(period)) or Extent(0.0, 0)
 
 
-def blocks(tx: ReadSession, pks: Sequence[int], batch: int = 500) -> list[Block]:
-    """Give the blocks with these numbers, in that order."""
-    batches = (pks[i : i + batch] for i in range(0, len(pks), batch))
-    return [block for part in batches for block in tx.all(Block, _blocks, pks=part)]
+def blocks(tx: ReadSession, device_pk: int, period: Period, spacing: float | None) -> list[Block]:
+    """Give the blocks that overlap a period, as they came in.
+
+    With a spacing, s: one in each slot of so many seconds, those in which the stage changes, and the last.
+    """
+    values = {"device_pk": device_pk, **_values(period)}
+    if spacing is None:
+        return tx.all(Block, _all_blocks, **values)
+    return tx.all(Block, _some_blocks, **values, spacing=spacing)
 
 
 def device_of_oldest(tx: ReadSession, before: datetime) -> int | None:

@@ -1,6 +1,5 @@
 """The angle history: fine for some days, then a point a minute; thinned for charts."""
 
-from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
@@ -12,13 +11,15 @@ from api import schemas
 from api.services.history_rows import Rows, pack, spaced, unpack
 from storage import coarse_estimates, estimates
 from storage.database import ReadSession, WriteSession
-from storage.estimates import Block, Mark
+from storage.estimates import Block
 from storage.models import EPOCH, MICROSECOND, microseconds
 
 OVERSAMPLING = 2
 """Rows read for each point of a chart, about; of a longer history only some blocks are read."""
 SKETCH = 1800.0
 """s between two rows of the sketch that is kept of each coarse day, for charts over months"""
+FINEST = 1e-3
+"""s; no rows are closer"""
 
 
 def append(
@@ -53,15 +54,15 @@ def _blocks(
     tx: ReadSession, device_pk: int, start: datetime | None, end: datetime | None, max_points: int
 ) -> tuple[list[Block], float]:
     """Read the blocks of a period, coarse and fine, as many as a chart needs; give the spacing of its rows too, s."""
-    days = coarse_estimates.days(start, end)
-    marks = estimates.marks(tx, device_pk, start, end)
+    days, period = coarse_estimates.days(start, end), (start, end)
+    fine = estimates.extent(tx, device_pk, period)
     long_ago = coarse_estimates.seconds(tx, device_pk, days)
     if start is not None and end is not None:
         long_ago = min(long_ago, max((end - start).total_seconds(), 0.0))  # less than the days in which it lies
-    spacing = (long_ago + sum(mark.t_last - mark.t_first for mark in marks)) / (OVERSAMPLING * max_points)
-    few = long_ago == 0 and sum(mark.size for mark in marks) <= OVERSAMPLING * max_points
+    spacing = (long_ago + fine.seconds) / (OVERSAMPLING * max_points)
+    few = long_ago == 0 and fine.rows <= OVERSAMPLING * max_points
     coarse = coarse_estimates.blocks(tx, device_pk, days, sketch=spacing >= SKETCH)
-    return coarse + estimates.blocks(tx, choose_blocks(marks, 0.0 if few else spacing)), spacing
+    return coarse + estimates.blocks(tx, device_pk, period, None if few else max(spacing, FINEST)), spacing
 
 
 def _within(time: NDArray[np.int64], start: datetime | None, end: datetime | None) -> NDArray[np.bool_]:
@@ -75,18 +76,6 @@ def _evenly_in_time(rows: Rows, spacing: float, started_at: NDArray[np.int64]) -
     if spacing == 0.0:
         return np.arange(rows.size)
     return np.union1d(spaced(rows, spacing, started_at), [rows.size - 1])
-
-
-def choose_blocks(marks: Sequence[Mark], spacing: float) -> list[int]:
-    """Choose which blocks to read: one in each slot of `spacing` seconds, those where the stage changes, the last."""
-    chosen: list[int] = []
-    before: tuple[int, float] | None = None
-    for i, mark in enumerate(marks):
-        slot = (mark.session_pk, mark.t_first // spacing if spacing else i)
-        if slot != before or mark.changes or i == len(marks) - 1:
-            chosen.append(mark.pk)
-        before = slot
-    return chosen
 
 
 def thin(stage: NDArray[Any], max_points: int) -> NDArray[np.int64]:
@@ -107,7 +96,7 @@ def _evenly(n: int, count: int) -> NDArray[np.int64]:
 
 def _columns(session: list[str], time: NDArray[np.int64], rows: Rows) -> schemas.Estimates:
     quaternion = core.quaternion.normalise(rows["quaternion"])
-    angles = np.degrees([core.quaternion.angles(q) for q in quaternion]).reshape(-1, 3).round(6).T.tolist()
+    angles = np.degrees(core.quaternion.all_angles(quaternion)).round(6).T.tolist()
     stages = {stage.value: stage.word for stage in core.Stage}
     return schemas.Estimates.model_validate(
         {

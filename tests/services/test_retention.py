@@ -40,7 +40,9 @@ def add_device(context: Context, device_id: str = "a") -> int:
         return fleet.number(tx, device_id)
 
 
-def read(context: Context, pk: int, start: datetime | None = None, end: datetime | None = None, n: int = 100_000) -> Any:
+def read(
+    context: Context, pk: int, start: datetime | None = None, end: datetime | None = None, n: int = 100_000
+) -> Any:
     with context.database.read() as tx:
         return history.read(tx, pk, start, end, n)
 
