@@ -47,7 +47,8 @@ _beside = sa.select(
     .where(alerts.c.device_pk == sa.bindparam("device_pk"), alert_unresolved)
     .scalar_subquery(),
 )
-_add = sa.insert(installations)
+_device_id = sa.select(devices.c.id).where(devices.c.pk == sa.bindparam("of_device_pk")).scalar_subquery()
+_add = sa.insert(installations).values(device_id=_device_id)
 _save = sa.update(installations).where(installations.c.device_pk == sa.bindparam("of_device_pk"))
 _touch = _save.values(revision=installations.c.revision + 1)
 
@@ -75,7 +76,7 @@ def beside(tx: ReadSession, row: Installation) -> Beside:
 
 def add(tx: WriteSession, installation: Installation) -> None:
     """Store the installation of a new device."""
-    tx.execute(_add, **installation._asdict())
+    tx.execute(_add, of_device_pk=installation.device_pk, **installation._asdict())
 
 
 def save(tx: WriteSession, installation: Installation) -> None:

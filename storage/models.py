@@ -55,6 +55,11 @@ def _device(**options: Any) -> sa.Column[int]:
     return sa.Column("device_pk", BIG, sa.ForeignKey("devices.pk", ondelete="CASCADE"), **options)
 
 
+def _device_id() -> sa.Column[str]:
+    """Copy of `devices.id`, which never changes: an index has lists in their order."""
+    return sa.Column("device_id", DEVICE_ID, nullable=False, server_default="")
+
+
 def _session(**options: Any) -> sa.Column[int]:
     return sa.Column("session_pk", BIG, sa.ForeignKey("sessions.pk", ondelete="CASCADE"), **options)
 
@@ -76,6 +81,7 @@ devices = sa.Table(
     sa.Column("notes", sa.Text),
     sa.Column("accelerometer_calibration", sa.JSON(none_as_null=True)),
     sa.Column("created_at", Instant, nullable=False),
+    sa.Column("search", sa.Text, nullable=False, server_default=""),
     sqlite_autoincrement=True,
 )
 
@@ -137,7 +143,7 @@ installations = sa.Table(
     _device(primary_key=True),
     sa.Column("snapshot", sa.LargeBinary),
     sa.Column("session_pk", BIG),  # no foreign key: it would cost an index, and the row goes with its device anyway
-    sa.Column("stage", sa.String(16), nullable=False, index=True),
+    sa.Column("stage", sa.String(16), nullable=False),
     sa.Column("since_session_pk", BIG),
     sa.Column("since_t", sa.Double),
     sa.Column("since_at", Instant, nullable=False),
@@ -145,6 +151,8 @@ installations = sa.Table(
     sa.Column("last_data_at", Instant, index=True),
     sa.Column("revision", sa.BigInteger, nullable=False),
     sa.Column("watch", sa.JSON(none_as_null=True)),
+    _device_id(),
+    sa.Index("ix_installations_stage_device_id", "stage", "device_id"),
 )
 
 estimates = sa.Table(
@@ -207,8 +215,12 @@ alerts = sa.Table(
     sa.Column("resolved_at", Instant),
     sa.Column("resolved_by", NAME),
     sa.Column("resolve_note", sa.Text),
-    sa.Index("ix_alerts_device_pk_pk", "device_pk", "pk"),
-    sa.Index("ix_alerts_state_pk", "state", "pk"),
+    _device_id(),
+    sa.Index("ix_alerts_opened_at_pk", "opened_at", "pk"),
+    sa.Index("ix_alerts_device_pk_opened_at_pk", "device_pk", "opened_at", "pk"),
+    sa.Index("ix_alerts_state_opened_at_pk", "state", "opened_at", "pk"),
+    sa.Index("ix_alerts_kind_opened_at_pk", "kind", "opened_at", "pk"),
+    sa.Index("ix_alerts_severity_opened_at_pk", "severity", "opened_at", "pk"),
     sqlite_autoincrement=True,
 )
 alert_unresolved = alerts.c.state != sa.literal_column("'resolved'")
@@ -218,6 +230,13 @@ sa.Index(
     alerts.c.device_pk,
     alerts.c.kind,
     unique=True,
+    sqlite_where=alert_unresolved,
+    postgresql_where=alert_unresolved,
+)
+sa.Index(
+    "ix_alerts_unresolved_device_id",
+    alerts.c.device_id,
+    alerts.c.device_pk,
     sqlite_where=alert_unresolved,
     postgresql_where=alert_unresolved,
 )

@@ -1,6 +1,7 @@
 """What a fleet needs: expiring keys, webhooks with their deliveries, an audit trail, rules' memory, leases.
 
 History is found by device and time from now on, however many sessions a device has had, and ages into coarse history.
+Lists come from an index in their order, and what is searched is one text.
 """
 
 import sqlalchemy as sa
@@ -21,9 +22,23 @@ ADDED = (
     ("api_keys", "created_by", sa.String(128)),
     ("installations", "watch", sa.JSON(none_as_null=True)),
 )
+COPIES = (
+    ("devices", "search", sa.Text()),
+    ("installations", "device_id", DEVICE_ID),
+    ("alerts", "device_id", DEVICE_ID),
+)
 INDEXES = (
-    ("ix_alerts_state_pk", "alerts", ["state", "pk"]),
     ("ix_installations_last_data_at", "installations", ["last_data_at"]),
+    ("ix_installations_stage_device_id", "installations", ["stage", "device_id"]),
+    ("ix_alerts_opened_at_pk", "alerts", ["opened_at", "pk"]),
+    ("ix_alerts_device_pk_opened_at_pk", "alerts", ["device_pk", "opened_at", "pk"]),
+    ("ix_alerts_state_opened_at_pk", "alerts", ["state", "opened_at", "pk"]),
+    ("ix_alerts_kind_opened_at_pk", "alerts", ["kind", "opened_at", "pk"]),
+    ("ix_alerts_severity_opened_at_pk", "alerts", ["severity", "opened_at", "pk"]),
+)
+FORMER_INDEXES = (
+    ("ix_installations_stage", "installations", ["stage"]),
+    ("ix_alerts_device_pk_pk", "alerts", ["device_pk", "pk"]),
 )
 """Columns and indexes for tables that are there; in a batch only where nothing refers to the table, see 0002."""
 AUTOINCREMENT = {"sqlite_autoincrement": True}
@@ -33,8 +48,22 @@ AUTOINCREMENT = {"sqlite_autoincrement": True}
 def upgrade() -> None:
     for table, name, kind in ADDED:
         op.add_column(table, sa.Column(name, kind, nullable=True))
+    for table, name, kind in COPIES:
+        op.add_column(table, sa.Column(name, kind, nullable=False, server_default=""))
+    _fill_copies()
     for name, table, columns in INDEXES:
         op.create_index(name, table, columns, unique=False)
+    for name, table, _ in FORMER_INDEXES:
+        op.drop_index(name, table_name=table)
+    unresolved = sa.text("state != 'resolved'")
+    op.create_index(
+        "ix_alerts_unresolved_device_id",
+        "alerts",
+        ["device_id", "device_pk"],
+        unique=False,
+        sqlite_where=unresolved,
+        postgresql_where=unresolved,
+    )
     _webhooks()
     _deliveries()
     _audit()
@@ -46,6 +75,16 @@ def upgrade() -> None:
         sa.Column("until", sa.BigInteger(), nullable=False),
         sa.PrimaryKeyConstraint("name", name="pk_leases"),
     )
+
+
+def _fill_copies() -> None:
+    for table in ("installations", "alerts"):
+        op.execute(f"UPDATE {table} SET device_id = (SELECT id FROM devices WHERE devices.pk = {table}.device_pk)")  # noqa: S608
+    connection = op.get_bind()
+    rows = connection.execute(sa.text("SELECT pk, id, name, vehicle, notes FROM devices")).all()
+    texts = [{"pk": pk, "search": "\n".join(filter(None, words)).casefold()[:1000]} for pk, *words in rows]
+    if texts:
+        connection.execute(sa.text("UPDATE devices SET search = :search WHERE pk = :pk"), texts)
 
 
 def _webhooks() -> None:
@@ -167,7 +206,10 @@ def downgrade() -> None:
     for table in ("leases", "audit", "webhook_deliveries", "webhooks"):
         op.drop_table(table)
     _history_undone()
+    op.drop_index("ix_alerts_unresolved_device_id", table_name="alerts")
+    for name, table, columns in FORMER_INDEXES:
+        op.create_index(name, table, columns, unique=False)
     for name, table, _ in reversed(INDEXES):
         op.drop_index(name, table_name=table)
-    for table, name, _ in reversed(ADDED):
+    for table, name, _ in (*reversed(COPIES), *reversed(ADDED)):
         op.drop_column(table, name)
