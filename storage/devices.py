@@ -31,7 +31,7 @@ class Device(NamedTuple):
 
 open_alerts = (
     sa.select(sa.func.count())
-    .where(alerts.c.device_pk == devices.c.pk, alert_unresolved)
+    .where(alerts.c.device_id == devices.c.id, alert_unresolved)
     .correlate(devices)
     .scalar_subquery()
 )
@@ -94,7 +94,9 @@ def page(
     pk, device_id, conditions = _listed(q, stage, has_open_alert)
     if after is not None:
         conditions.append(device_id > after)
-    pks = sa.select(pk).where(*conditions).group_by(device_id, pk).order_by(device_id).limit(limit)
+    pks = sa.select(pk).where(*conditions).order_by(device_id, pk).limit(limit)
+    if pk is alerts.c.device_pk:
+        pks = pks.group_by(device_id, pk)  # there may be several of a device
     return tx.all(Device, _select.where(devices.c.pk.in_(pks)).order_by(devices.c.id))
 
 
@@ -109,14 +111,14 @@ def _listed(q: str | None, stage: str | None, has_open_alert: bool | None) -> Li
     if q:
         pk, device_id = devices.c.pk, devices.c.id.concat("")
         found = devices.c.search.contains(q.casefold(), autoescape=True)
-        return pk, device_id, [found, *_has_stage(devices.c.id, stage), *_is_alerted(pk, has_open_alert)]
+        return pk, device_id, [found, *_has_stage(devices.c.id, stage), *_is_alerted(devices.c.id, has_open_alert)]
     if has_open_alert:
         device_id = alerts.c.device_id
         return alerts.c.device_pk, device_id, [alert_unresolved, *_has_stage(device_id, stage)]
     if stage is not None:
         pk, device_id = installations.c.device_pk, installations.c.device_id
-        return pk, device_id, [installations.c.stage == stage, *_is_alerted(pk, has_open_alert)]
-    return devices.c.pk, devices.c.id, _is_alerted(devices.c.pk, has_open_alert)
+        return pk, device_id, [installations.c.stage == stage, *_is_alerted(device_id, has_open_alert)]
+    return devices.c.pk, devices.c.id, _is_alerted(devices.c.id, has_open_alert)
 
 
 def _has_stage(device_id: sa.ColumnElement[str], stage: str | None) -> list[sa.ColumnElement[bool]]:
@@ -124,8 +126,8 @@ def _has_stage(device_id: sa.ColumnElement[str], stage: str | None) -> list[sa.C
     return [] if stage is None else [sa.exists().where(*this)]
 
 
-def _is_alerted(pk: sa.ColumnElement[int], wanted: bool | None) -> list[sa.ColumnElement[bool]]:
-    alerted = sa.exists().where(alerts.c.device_pk == pk, alert_unresolved)
+def _is_alerted(device_id: sa.ColumnElement[str], wanted: bool | None) -> list[sa.ColumnElement[bool]]:
+    alerted = sa.exists().where(alerts.c.device_id == device_id, alert_unresolved)
     return [] if wanted is None else [alerted if wanted else ~alerted]
 
 

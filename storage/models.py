@@ -240,6 +240,14 @@ sa.Index(
     sqlite_where=alert_unresolved,
     postgresql_where=alert_unresolved,
 )
+"""Whether a device has open alerts is asked by its id: SQLite would take the number for the index of all alerts."""
+sa.Index(
+    "ix_alerts_unresolved_kind_severity",
+    alerts.c.kind,
+    alerts.c.severity,
+    sqlite_where=alert_unresolved,
+    postgresql_where=alert_unresolved,
+)
 
 events = sa.Table(
     "events",

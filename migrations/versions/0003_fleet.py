@@ -36,6 +36,11 @@ INDEXES = (
     ("ix_alerts_kind_opened_at_pk", "alerts", ["kind", "opened_at", "pk"]),
     ("ix_alerts_severity_opened_at_pk", "alerts", ["severity", "opened_at", "pk"]),
 )
+UNRESOLVED = sa.text("state != 'resolved'")
+UNRESOLVED_INDEXES = (
+    ("ix_alerts_unresolved_device_id", ["device_id", "device_pk"]),
+    ("ix_alerts_unresolved_kind_severity", ["kind", "severity"]),
+)
 FORMER_INDEXES = (
     ("ix_installations_stage", "installations", ["stage"]),
     ("ix_alerts_device_pk_pk", "alerts", ["device_pk", "pk"]),
@@ -55,15 +60,8 @@ def upgrade() -> None:
         op.create_index(name, table, columns, unique=False)
     for name, table, _ in FORMER_INDEXES:
         op.drop_index(name, table_name=table)
-    unresolved = sa.text("state != 'resolved'")
-    op.create_index(
-        "ix_alerts_unresolved_device_id",
-        "alerts",
-        ["device_id", "device_pk"],
-        unique=False,
-        sqlite_where=unresolved,
-        postgresql_where=unresolved,
-    )
+    for name, columns in UNRESOLVED_INDEXES:
+        op.create_index(name, "alerts", columns, unique=False, sqlite_where=UNRESOLVED, postgresql_where=UNRESOLVED)
     _webhooks()
     _deliveries()
     _audit()
@@ -206,7 +204,8 @@ def downgrade() -> None:
     for table in ("leases", "audit", "webhook_deliveries", "webhooks"):
         op.drop_table(table)
     _history_undone()
-    op.drop_index("ix_alerts_unresolved_device_id", table_name="alerts")
+    for name, _ in UNRESOLVED_INDEXES:
+        op.drop_index(name, table_name="alerts")
     for name, table, columns in FORMER_INDEXES:
         op.create_index(name, table, columns, unique=False)
     for name, table, _ in reversed(INDEXES):
