@@ -113,6 +113,7 @@ sessions = sa.Table(
     sa.Column("started_at", Instant),
     sa.Column("created_at", Instant, nullable=False),
     sa.UniqueConstraint("device_pk", "name"),
+    sa.Index("ix_sessions_device_pk_pk", "device_pk", "pk"),
     sqlite_autoincrement=True,
 )
 

@@ -28,6 +28,7 @@ COPIES = (
     ("alerts", "device_id", DEVICE_ID),
 )
 INDEXES = (
+    ("ix_sessions_device_pk_pk", "sessions", ["device_pk", "pk"]),
     ("ix_installations_last_data_at", "installations", ["last_data_at"]),
     ("ix_installations_stage_device_id", "installations", ["stage", "device_id"]),
     ("ix_alerts_opened_at_pk", "alerts", ["opened_at", "pk"]),

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from sqlalchemy import event
 
-from storage import alerts, coarse_estimates, devices, estimates, events, installations, leases, retention
+from storage import alerts, chunks, coarse_estimates, devices, estimates, events, installations, leases, retention
 from storage.alerts import Filter, Place
 from storage.database import Database, ReadSession, WriteSession
 from storage.leases import Lease
@@ -55,6 +55,8 @@ LOOKS: dict[str, Callable[[WriteSession], object]] = {
     "audit that goes": lambda tx: retention.audit_trail(tx, NOW, 100),
     "coarse history that goes": lambda tx: retention.coarse_history(tx, 5, 100),
     "events that go": lambda tx: events.forget(tx, NOW, 100),
+    "sessions that wait": lambda tx: chunks.sessions_waiting(tx, 1, 5),
+    "devices that wait": lambda tx: chunks.devices_waiting_since(tx, NOW, NOW),
     "a lease": lambda tx: leases.take(tx, "x", Lease("me", NOW), NOW, NOW),
 }
 
@@ -126,3 +128,11 @@ def test_open_alerts_of_a_device_are_found_among_open_alerts(tables: Database) -
     """Not among all its alerts, which are kept for ever."""
     steps = look(tables, LOOKS["beside an installation"])
     assert any("ix_alerts_unresolved_device_id" in step for step in steps), steps
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_what_waits_is_looked_for_among_what_waits(tables: Database) -> None:
+    """Not among all receipts of the device, or of that age; on every upload, and every few seconds."""
+    for name in ("sessions that wait", "devices that wait"):
+        steps = look(tables, LOOKS[name])
+        assert any("chunks USING INDEX ix_chunks_waiting" in step for step in steps), steps
