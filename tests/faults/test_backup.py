@@ -40,7 +40,9 @@ class Sender(threading.Thread):
                 for seq, body in enumerate(plain().chunks):
                     if self.ending.is_set():
                         return
-                    device.send(body, seq, f"s{n}", expect=200)
+                    while (status := device.send(body, seq, f"s{n}").status_code) == 503:
+                        time.sleep(0.1)  # the other process is starting
+                    assert status == 200
                     self.acknowledged.append((f"s{n}", seq))
 
 

@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,17 +23,18 @@ LEFT_AFTER = 3
 
 
 @pytest.fixture
-def disk(backend: str, tmp_path: Path) -> Iterator[Path]:
-    """A small disk of the test's own."""
-    place = tmp_path / "disk"
-    place.mkdir()
+def disk(backend: str) -> Iterator[Path]:
+    """A small disk of the test's own, where PostgreSQL's user may go too."""
+    place = Path(tempfile.mkdtemp(prefix="livella-disk-"))
     options = ["-t", "tmpfs", "-o", f"size={SIZE[backend]},mode=0777"]
     if os.geteuid() != 0 or subprocess.run(["mount", *options, "none", place], check=False).returncode:
+        place.rmdir()
         pytest.skip("a disk cannot be mounted here")
     try:
         yield place
     finally:
         subprocess.run(["umount", "--lazy", place], check=True)
+        place.rmdir()
 
 
 @pytest.fixture
@@ -45,8 +47,6 @@ def url_on_disk(disk: Path, backend: str, request: pytest.FixtureRequest) -> Ite
     inner = disk / "tablespace"
     inner.mkdir(mode=0o700)
     shutil.chown(inner, "postgres")
-    for parent in list(disk.parents)[:3]:
-        parent.chmod(0o755)
     url = server.empty_database()
     name = url.rsplit("/", 1)[-1]
     server.execute(f"CREATE TABLESPACE small LOCATION '{inner}'")
