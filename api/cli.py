@@ -13,7 +13,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-db = typer.Typer(help="Bring the database up to date, back it up, restore it.", no_args_is_help=True)
+db = typer.Typer(help="Bring the database up to date, back it up, restore it, check it.", no_args_is_help=True)
 keys = typer.Typer(help="Administer the keys, on the service's own machine.", no_args_is_help=True)
 app.add_typer(db, name="db")
 app.add_typer(keys, name="keys")
@@ -220,6 +220,14 @@ def db_restore(
     from api.commands import db as command
 
     command.restore({"database_url": database_url, "data_dir": data_dir}, source, replace)
+
+
+@db.command("check")
+def db_check(database_url: DatabaseUrl = None, data_dir: DataDir = None) -> None:
+    """Look for damage in the database, also while the service runs."""
+    from api.commands import db as command
+
+    command.check({"database_url": database_url, "data_dir": data_dir})
 
 
 @app.command()

@@ -1,6 +1,7 @@
 """What routes ask for: the context, who is calling, the body."""
 
 import re
+from datetime import datetime
 from typing import Annotated
 from urllib.parse import urlsplit
 
@@ -146,5 +147,11 @@ async def cursor_number(cursor: Cursor = None) -> int | None:
     return None if cursor is None else paging.decode_number(cursor)
 
 
+async def cursor_place(cursor: Cursor = None) -> tuple[datetime, int] | None:
+    """Give the moment and the number inside a cursor."""
+    return None if cursor is None else paging.decode_place(cursor)
+
+
 AfterText = Annotated[str | None, Depends(cursor_text)]
 BeforeNumber = Annotated[int | None, Depends(cursor_number)]
+BeforePlace = Annotated[tuple[datetime, int] | None, Depends(cursor_place)]

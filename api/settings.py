@@ -44,11 +44,16 @@ class Settings(BaseSettings):
     )
     session_hours: float = Field(12.0, gt=0, le=720, description="Hours until a sign-in to the page ends.")
     history_days: float = Field(
-        90.0,
-        gt=0,
-        description="Days the angle history, the receipts of chunks and the deliveries of webhooks are kept; "
-        "mountings are kept for ever.",
+        14.0, gt=0, description="Days the fine angle history is kept; then it becomes one point a minute."
     )
+    coarse_history_days: float = Field(
+        365.0, gt=0, description="Days the angle history of one point a minute is kept; mountings and alerts stay."
+    )
+    receipt_days: float = Field(
+        14.0, ge=1, description="Days in which a chunk that comes once more is known as a duplicate; later it gets 409."
+    )
+    delivery_days: float = Field(30.0, ge=4, description="Days the deliveries of webhooks are kept.")
+    audit_days: float = Field(730.0, gt=0, description="Days the audit trail is kept.")
     stream_minutes: float = Field(
         15.0, gt=0, description="Minutes a live stream that was cut off can be resumed without a gap."
     )

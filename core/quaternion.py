@@ -109,6 +109,16 @@ def angles(q: ArrayLike) -> tuple[float, float, float]:
     return float(np.arctan2(r[2, 1], r[2, 2])), pitch, float(np.arctan2(r[1, 0], r[0, 0]))
 
 
+def all_angles(q: ArrayLike) -> Floats:
+    """Roll, pitch, yaw of many quaternions, a row each, as `angles` gives them one by one."""
+    r = matrix(np.reshape(q, (-1, 4)))
+    cosine = np.hypot(r[:, 0, 0], r[:, 1, 0])
+    locked = cosine < GIMBAL_LOCK_COSINE
+    roll = np.where(locked, 0.0, np.arctan2(r[:, 2, 1], r[:, 2, 2]))
+    yaw = np.where(locked, np.arctan2(-r[:, 0, 1], r[:, 1, 1]), np.arctan2(r[:, 1, 0], r[:, 0, 0]))
+    return np.column_stack([roll, np.arctan2(-r[:, 2, 0], cosine), yaw])
+
+
 def random(generator: np.random.Generator, size: int | None = None) -> Floats:
     """Draw rotations uniformly (Shoemake 1992: a normalised Gaussian 4-vector)."""
     return normalise(generator.normal(size=4 if size is None else (size, 4)))

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import alert_unresolved, alerts, devices
+from storage.models import Instant, alert_unresolved, alerts, devices
 
 OPEN, ACKNOWLEDGED, RESOLVED = "open", "acknowledged", "resolved"
 SEVERITIES = ("info", "warning", "critical")
@@ -44,6 +44,13 @@ class Finding(NamedTuple):
     data: dict[str, Any]
 
 
+class Place(NamedTuple):
+    """A place in a list of alerts."""
+
+    opened_at: datetime
+    pk: int
+
+
 class Filter(NamedTuple):
     """Which alerts to list."""
 
@@ -64,8 +71,14 @@ _find_open = _select.where(
     alert_unresolved,
     alerts.c.kind.in_(sa.bindparam("kinds", expanding=True)),
 ).order_by(alerts.c.pk)
-_add = sa.insert(alerts).returning(alerts.c.pk)
-_change = sa.update(alerts).where(alerts.c.pk == sa.bindparam("of_pk"))
+_device_id = sa.select(devices.c.id).where(devices.c.pk == sa.bindparam("of_device_pk")).scalar_subquery()
+_add = sa.insert(alerts).values(device_id=_device_id).returning(alerts.c.pk)
+_now = sa.bindparam("now", type_=Instant)
+_not_before = sa.case((alerts.c.updated_at > _now, alerts.c.updated_at), else_=_now)
+_change = sa.update(alerts).where(alerts.c.pk == sa.bindparam("of_pk")).values(updated_at=_not_before)
+_acknowledge = _change.values(acknowledged_at=_not_before)
+_resolve = _change.values(resolved_at=_not_before)
+"""Times of an alert never run backwards, whatever the clock does."""
 _counts = (
     sa.select(alerts.c.kind, alerts.c.severity, sa.func.count())
     .where(alert_unresolved)
@@ -83,19 +96,26 @@ def find_open(tx: ReadSession, device_pk: int, kinds: Sequence[str]) -> list[Ale
     return tx.all(Alert, _find_open, device_pk=device_pk, kinds=kinds)
 
 
-def page(tx: ReadSession, limit: int, before: int | None, wanted: Filter) -> list[Alert]:
-    """Give up to `limit` alerts, newest first, from before number `before`."""
+def page(tx: ReadSession, limit: int, before: Place | None, wanted: Filter) -> list[Alert]:
+    """Give up to `limit` alerts, newest first, from before a place in that order."""
     compare: dict[str, Callable[[Any], sa.ColumnElement[bool]]] = {
         "state": alerts.c.state.__eq__,
         "kind": alerts.c.kind.__eq__,
         "severity": alerts.c.severity.__eq__,
-        "device_id": devices.c.id.__eq__,
+        "device_id": lambda value: alerts.c.device_pk == _pk_of(value),
         "since": alerts.c.opened_at.__ge__,
         "until": alerts.c.opened_at.__lt__,
     }
     chosen = [compare[name](value) for name, value in wanted._asdict().items() if value is not None]
-    statement = _select.where(*chosen).order_by(alerts.c.pk.desc()).limit(limit)
-    return tx.all(Alert, statement if before is None else statement.where(alerts.c.pk < before))
+    if before is not None:
+        place = sa.tuple_(sa.literal(before.opened_at, Instant), sa.literal(before.pk, sa.BigInteger))
+        chosen.append(sa.tuple_(alerts.c.opened_at, alerts.c.pk) < place)
+    statement = _select.where(*chosen).order_by(alerts.c.opened_at.desc(), alerts.c.pk.desc()).limit(limit)
+    return tx.all(Alert, statement)
+
+
+def _pk_of(device_id: str) -> sa.ScalarSelect[int]:
+    return sa.select(devices.c.pk).where(devices.c.id == device_id).correlate(None).scalar_subquery()
 
 
 def raise_(tx: WriteSession, device_pk: int, finding: Finding, now: datetime) -> int:
@@ -106,22 +126,24 @@ def raise_(tx: WriteSession, device_pk: int, finding: Finding, now: datetime) ->
     for alert in find_open(tx, device_pk, [finding.kind]):
         milder = SEVERITIES.index(finding.severity) < SEVERITIES.index(alert.severity)
         told = {} if milder else finding._asdict()
-        tx.execute(_change, of_pk=alert.pk, occurrences=alert.occurrences + 1, updated_at=now, **told)
+        tx.execute(_change, of_pk=alert.pk, occurrences=alert.occurrences + 1, now=now, **told)
         return alert.pk
     opened = {"state": OPEN, "opened_at": now, "updated_at": now, "occurrences": 1}
-    return int(tx.execute(_add, device_pk=device_pk, **opened, **finding._asdict()).scalar_one())
+    return int(
+        tx.execute(_add, device_pk=device_pk, of_device_pk=device_pk, **opened, **finding._asdict()).scalar_one()
+    )
 
 
 def acknowledge(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime) -> None:
     """Somebody has seen it."""
-    values = {"state": ACKNOWLEDGED, "acknowledged_at": now, "acknowledged_by": by, "acknowledge_note": note}
-    tx.execute(_change, of_pk=pk, updated_at=now, **values)
+    values = {"state": ACKNOWLEDGED, "acknowledged_by": by, "acknowledge_note": note}
+    tx.execute(_acknowledge, of_pk=pk, now=now, **values)
 
 
 def resolve(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime) -> None:
     """It is over."""
-    values = {"state": RESOLVED, "resolved_at": now, "resolved_by": by, "resolve_note": note}
-    tx.execute(_change, of_pk=pk, updated_at=now, **values)
+    values = {"state": RESOLVED, "resolved_by": by, "resolve_note": note}
+    tx.execute(_resolve, of_pk=pk, now=now, **values)
 
 
 def counts(tx: ReadSession, device_pk: int | None = None) -> list[tuple[str, str, int]]:

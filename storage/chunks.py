@@ -1,12 +1,13 @@
 """Receipts of chunks. A receipt stays, so that a repeated chunk is recognised; the bytes stay only while waiting."""
 
+from collections.abc import Sequence
 from datetime import datetime
 from typing import NamedTuple
 
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import chunk_waits, chunks, devices, sessions
+from storage.models import Instant, chunk_waits, chunks, devices, sessions
 
 APPLIED, WAITING = "applied", "waiting"
 
@@ -51,22 +52,36 @@ _settle = sa.update(chunks).where(_this)
 _waiting = sa.select(sa.func.count(), sa.func.min(chunks.c.seq), sa.func.min(chunks.c.received_at)).where(
     chunks.c.session_pk == sa.bindparam("session_pk"), chunk_waits
 )
+_bring_back = (
+    sa.update(chunks)
+    .where(
+        chunks.c.session_pk.in_(sa.bindparam("session_pks", expanding=True)),
+        chunk_waits,
+        chunks.c.received_at > sa.bindparam("now", type_=Instant),
+    )
+    .values(received_at=sa.bindparam("now", type_=Instant))
+)
 _sessions_waiting = (
     sa.select(sessions.c.pk)
     .where(
         sessions.c.device_pk == sa.bindparam("device_pk"),
-        sessions.c.pk.in_(sa.select(chunks.c.session_pk).where(chunk_waits)),
+        sessions.c.pk >= sa.bindparam("current"),
+        sa.exists().where(chunks.c.session_pk == sessions.c.pk, chunk_waits),
     )
     .order_by(sessions.c.pk)
 )
+_came_in = sa.type_coerce(chunks.c.received_at, sa.BigInteger) + 0
+"""Written so that SQLite looks among what waits, not among all receipts that are as old."""
 _devices_waiting = (
     sa.select(devices.c.id)
     .distinct()
     .join_from(chunks, sessions)
     .join(devices)
-    .where(chunk_waits, chunks.c.received_at <= sa.bindparam("moment"))
+    .where(
+        chunk_waits,
+        sa.or_(_came_in <= sa.bindparam("moment", type_=Instant), _came_in > sa.bindparam("now", type_=Instant)),
+    )
 )
-_forget = sa.delete(chunks).where(chunks.c.received_at < sa.bindparam("before"), chunks.c.state == APPLIED)
 
 
 def find(tx: ReadSession, session_pk: int, seq: int) -> Receipt | None:
@@ -96,16 +111,19 @@ def waiting(tx: ReadSession, session_pk: int) -> Waiting:
     return Waiting(*tx.connection.execute(_waiting, {"session_pk": session_pk}).one())
 
 
-def sessions_waiting(tx: ReadSession, device_pk: int) -> list[int]:
-    """Give the sessions of a device that have waiting chunks, in the order in which they began."""
-    return tx.all(int, _sessions_waiting, device_pk=device_pk)
+def sessions_waiting(tx: ReadSession, device_pk: int, current: int | None) -> list[int]:
+    """Give the sessions of a device that have waiting chunks, in the order in which they began.
+
+    Nothing waits in sessions before the current one: however many there are, they are not looked at.
+    """
+    return tx.all(int, _sessions_waiting, device_pk=device_pk, current=current or 0)
 
 
-def devices_waiting_since(tx: ReadSession, moment: datetime) -> list[str]:
-    """Give the ids of the devices that have a chunk waiting since `moment` or longer."""
-    return tx.all(str, _devices_waiting, moment=moment)
+def bring_back(tx: WriteSession, session_pks: Sequence[int], now: datetime) -> None:
+    """Let chunks that came in later than now, by a clock that was set back since, have come in now."""
+    tx.execute(_bring_back, session_pks=session_pks, now=now)
 
 
-def forget(tx: WriteSession, before: datetime) -> int:
-    """Remove the receipts of chunks that came in before a moment and were applied."""
-    return tx.execute(_forget, before=before).rowcount
+def devices_waiting_since(tx: ReadSession, moment: datetime, now: datetime) -> list[str]:
+    """Give the ids of the devices that have a chunk waiting since `moment` or longer, or from later than now."""
+    return tx.all(str, _devices_waiting, moment=moment, now=now)

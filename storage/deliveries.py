@@ -76,9 +76,6 @@ _revive = sa.update(webhook_deliveries).where(
     _changed_webhook, _table.c.state == FAILED, _table.c.device_id.is_not(None)
 )
 _backlog = sa.select(sa.func.count()).select_from(_table.join(webhooks)).where(delivery_pending, webhooks.c.active)
-_forget = sa.delete(webhook_deliveries).where(
-    _table.c.created_at < sa.bindparam("before", type_=Instant), ~delivery_pending
-)
 
 
 def add(tx: WriteSession, rows: list[dict[str, Any]]) -> None:
@@ -128,8 +125,3 @@ def page(tx: ReadSession, webhook_pk: int, limit: int, before: int | None) -> li
 def backlog(tx: ReadSession) -> int:
     """Count the deliveries that webhooks still wait for."""
     return int(tx.value(_backlog))
-
-
-def forget(tx: WriteSession, before: datetime) -> None:
-    """Remove the deliveries from before a moment that are over: delivered or given up."""
-    tx.execute(_forget, before=before)

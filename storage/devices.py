@@ -1,5 +1,6 @@
 """Devices, each listed with a summary of its installation."""
 
+from collections.abc import Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
@@ -30,7 +31,7 @@ class Device(NamedTuple):
 
 open_alerts = (
     sa.select(sa.func.count())
-    .where(alerts.c.device_pk == devices.c.pk, alert_unresolved)
+    .where(alerts.c.device_id == devices.c.id, alert_unresolved)
     .correlate(devices)
     .scalar_subquery()
 )
@@ -62,6 +63,11 @@ _pk = sa.select(devices.c.pk).where(devices.c.id == sa.bindparam("id"))
 _accelerometer_calibration = sa.select(devices.c.accelerometer_calibration).where(devices.c.pk == sa.bindparam("pk"))
 _add = sa.insert(devices).returning(devices.c.pk)
 _edit = sa.update(devices).where(devices.c.pk == sa.bindparam("of_pk"))
+TEXTS = ("id", "name", "vehicle", "notes")
+"""What is searched, in this order."""
+SEARCHED = 1000
+"""characters of these texts that are searched"""
+_texts = sa.select(*(devices.c[name] for name in TEXTS)).where(devices.c.pk == sa.bindparam("pk"))
 _remove = sa.delete(devices).where(devices.c.pk == sa.bindparam("pk"))
 
 
@@ -85,17 +91,44 @@ def page(
     has_open_alert: bool | None = None,
 ) -> list[Device]:
     """Give up to `limit` devices in the order of their ids, from after `after`; `q` is looked for in every text."""
-    statement = _select.order_by(devices.c.id).limit(limit)
+    pk, device_id, conditions = _listed(q, stage, has_open_alert)
     if after is not None:
-        statement = statement.where(devices.c.id > after)
+        conditions.append(device_id > after)
+    pks = sa.select(pk).where(*conditions).order_by(device_id, pk).limit(limit)
+    if pk is alerts.c.device_pk:
+        pks = pks.group_by(device_id, pk)  # there may be several of a device
+    return tx.all(Device, _select.where(devices.c.pk.in_(pks)).order_by(devices.c.id))
+
+
+Listed = tuple[sa.ColumnElement[int], sa.ColumnElement[str], list[sa.ColumnElement[bool]]]
+
+
+def _listed(q: str | None, stage: str | None, has_open_alert: bool | None) -> Listed:
+    """Give number, id and conditions of the devices to list, from where an index has the most telling ones in order.
+
+    A text is looked for in every device, by number: in the order of ids, which is random there, that takes longer.
+    """
     if q:
-        texts = (devices.c.id, devices.c.name, devices.c.vehicle, devices.c.notes)
-        statement = statement.where(sa.or_(*(text.icontains(q, autoescape=True) for text in texts)))
+        pk, device_id = devices.c.pk, devices.c.id.concat("")
+        found = devices.c.search.contains(q.casefold(), autoescape=True)
+        return pk, device_id, [found, *_has_stage(devices.c.id, stage), *_is_alerted(devices.c.id, has_open_alert)]
+    if has_open_alert:
+        device_id = alerts.c.device_id
+        return alerts.c.device_pk, device_id, [alert_unresolved, *_has_stage(device_id, stage)]
     if stage is not None:
-        statement = statement.where(installations.c.stage == stage)
-    if has_open_alert is not None:
-        statement = statement.where(open_alerts > 0 if has_open_alert else open_alerts == 0)
-    return tx.all(Device, statement)
+        pk, device_id = installations.c.device_pk, installations.c.device_id
+        return pk, device_id, [installations.c.stage == stage, *_is_alerted(device_id, has_open_alert)]
+    return devices.c.pk, devices.c.id, _is_alerted(devices.c.id, has_open_alert)
+
+
+def _has_stage(device_id: sa.ColumnElement[str], stage: str | None) -> list[sa.ColumnElement[bool]]:
+    this = (installations.c.device_id == device_id, installations.c.stage == stage)
+    return [] if stage is None else [sa.exists().where(*this)]
+
+
+def _is_alerted(device_id: sa.ColumnElement[str], wanted: bool | None) -> list[sa.ColumnElement[bool]]:
+    alerted = sa.exists().where(alerts.c.device_id == device_id, alert_unresolved)
+    return [] if wanted is None else [alerted if wanted else ~alerted]
 
 
 def accelerometer_calibration(tx: ReadSession, pk: int) -> dict[str, Any] | None:
@@ -106,13 +139,19 @@ def accelerometer_calibration(tx: ReadSession, pk: int) -> dict[str, Any] | None
 
 def add(tx: WriteSession, device_id: str, values: dict[str, Any], now: datetime) -> int:
     """Register a device with the values of its columns; `IntegrityError` when the id is taken."""
-    return int(tx.execute(_add, id=device_id, created_at=now, **values).scalar_one())
+    search = _search([device_id, *(values.get(name) for name in TEXTS[1:])])
+    return int(tx.execute(_add, id=device_id, created_at=now, search=search, **values).scalar_one())
+
+
+def _search(texts: Sequence[str | None]) -> str:
+    return "\n".join(filter(None, texts)).casefold()[:SEARCHED]
 
 
 def edit(tx: WriteSession, pk: int, values: dict[str, Any]) -> None:
     """Change the texts of a device, or its accelerometer's calibration."""
     if values:
         tx.execute(_edit, of_pk=pk, **values)
+        tx.execute(_edit, of_pk=pk, search=_search(tx.connection.execute(_texts, {"pk": pk}).one()))
 
 
 def remove(tx: WriteSession, pk: int) -> None:

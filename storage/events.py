@@ -12,7 +12,7 @@ import sqlalchemy as sa
 
 from storage import meta
 from storage.database import ReadSession, WriteSession
-from storage.models import events
+from storage.models import Instant, events
 
 PRUNED = "events_pruned"
 
@@ -60,6 +60,13 @@ _after_sqlite = (
     .order_by(events.c.xact, events.c.pk)
     .limit(sa.bindparam("limit"))
 )
+_oldest = (
+    sa.select(events.c.pk)
+    .where(events.c.created_at < sa.bindparam("before", type_=Instant))
+    .order_by(events.c.created_at)
+    .limit(sa.bindparam("limit"))
+)
+_remove = sa.delete(events).where(events.c.pk.in_(_oldest)).returning(events.c.xact, events.c.pk)
 _after_postgresql = _after_sqlite.where(events.c.xact < _oldest_running)
 
 
@@ -89,13 +96,9 @@ def pruned(tx: ReadSession) -> Position:
     return (Position.parse(text) if text else None) or Position(0, 0)
 
 
-def forget(tx: WriteSession, before: datetime) -> None:
-    """Remove the events from before a moment."""
-    old = events.c.created_at < before
-    newest = tx.one(
-        Position,
-        sa.select(events.c.xact, events.c.pk).where(old).order_by(events.c.xact.desc(), events.c.pk.desc()).limit(1),
-    )
-    if newest is not None:
-        tx.execute(sa.delete(events).where(old))
-        meta.put(tx, PRUNED, str(max(newest, pruned(tx))))
+def forget(tx: WriteSession, before: datetime, limit: int) -> int:
+    """Remove up to `limit` events from before a moment; give their number."""
+    removed = tx.all(Position, _remove, before=before, limit=limit)
+    if removed:
+        meta.put(tx, PRUNED, str(max(*removed, pruned(tx))))
+    return len(removed)

@@ -41,13 +41,12 @@ _columns = [installations.c[name] for name in Installation._fields]
 _of_id = sa.select(*_columns).join_from(installations, devices).where(devices.c.id == sa.bindparam("id"))
 _lock = _of_id.with_for_update(key_share=True, of=installations)
 _get = sa.select(*_columns).where(installations.c.device_pk == sa.bindparam("device_pk"))
+_device_id = sa.select(devices.c.id).where(devices.c.pk == sa.bindparam("of_device_pk")).scalar_subquery()
 _beside = sa.select(
     sa.select(sessions.c.started_at).where(sessions.c.pk == sa.bindparam("since_session_pk")).scalar_subquery(),
-    sa.select(sa.func.count())
-    .where(alerts.c.device_pk == sa.bindparam("device_pk"), alert_unresolved)
-    .scalar_subquery(),
+    sa.select(sa.func.count()).where(alerts.c.device_id == _device_id, alert_unresolved).scalar_subquery(),
 )
-_add = sa.insert(installations)
+_add = sa.insert(installations).values(device_id=_device_id)
 _save = sa.update(installations).where(installations.c.device_pk == sa.bindparam("of_device_pk"))
 _touch = _save.values(revision=installations.c.revision + 1)
 
@@ -69,13 +68,13 @@ def get(tx: ReadSession, device_pk: int) -> Installation | None:
 
 def beside(tx: ReadSession, row: Installation) -> Beside:
     """Give what is shown with an installation."""
-    values = {"since_session_pk": row.since_session_pk, "device_pk": row.device_pk}
+    values = {"since_session_pk": row.since_session_pk, "of_device_pk": row.device_pk}
     return Beside(*tx.connection.execute(_beside, values).one())
 
 
 def add(tx: WriteSession, installation: Installation) -> None:
     """Store the installation of a new device."""
-    tx.execute(_add, **installation._asdict())
+    tx.execute(_add, of_device_pk=installation.device_pk, **installation._asdict())
 
 
 def save(tx: WriteSession, installation: Installation) -> None:

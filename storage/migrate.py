@@ -5,11 +5,13 @@ from importlib.resources import files
 import sqlalchemy as sa
 from alembic import command
 from alembic.config import Config
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
 from sqlalchemy.engine import Connection
 from sqlalchemy.exc import OperationalError
 from tenacity import retry, retry_if_exception_type, stop_after_delay, wait_random
 
-from storage.database import Database, WriteSession
+from storage.database import Database, ReadSession, WriteSession
 
 MIGRATION_LOCK = 0x6C6976656C6C61
 """Number of the advisory lock that PostgreSQL holds during a migration ("livella")."""
@@ -28,6 +30,12 @@ def lock(tx: WriteSession) -> None:
     """Make every other process that calls this wait until this transaction ends."""
     if tx.is_postgresql:
         tx.connection.execute(sa.select(sa.func.pg_advisory_xact_lock(MIGRATION_LOCK)))
+
+
+def is_newest(tx: ReadSession) -> bool:
+    """Tell whether no migration is missing."""
+    current = MigrationContext.configure(tx.connection).get_current_heads()
+    return set(current) == set(ScriptDirectory.from_config(config()).get_heads())
 
 
 def config(connection: Connection | None = None) -> Config:

@@ -55,6 +55,11 @@ def _device(**options: Any) -> sa.Column[int]:
     return sa.Column("device_pk", BIG, sa.ForeignKey("devices.pk", ondelete="CASCADE"), **options)
 
 
+def _device_id() -> sa.Column[str]:
+    """Copy of `devices.id`, which never changes: an index has lists in their order."""
+    return sa.Column("device_id", DEVICE_ID, nullable=False, server_default="")
+
+
 def _session(**options: Any) -> sa.Column[int]:
     return sa.Column("session_pk", BIG, sa.ForeignKey("sessions.pk", ondelete="CASCADE"), **options)
 
@@ -76,6 +81,7 @@ devices = sa.Table(
     sa.Column("notes", sa.Text),
     sa.Column("accelerometer_calibration", sa.JSON(none_as_null=True)),
     sa.Column("created_at", Instant, nullable=False),
+    sa.Column("search", sa.Text, nullable=False, server_default=""),
     sqlite_autoincrement=True,
 )
 
@@ -107,6 +113,7 @@ sessions = sa.Table(
     sa.Column("started_at", Instant),
     sa.Column("created_at", Instant, nullable=False),
     sa.UniqueConstraint("device_pk", "name"),
+    sa.Index("ix_sessions_device_pk_pk", "device_pk", "pk"),
     sqlite_autoincrement=True,
 )
 
@@ -137,7 +144,7 @@ installations = sa.Table(
     _device(primary_key=True),
     sa.Column("snapshot", sa.LargeBinary),
     sa.Column("session_pk", BIG),  # no foreign key: it would cost an index, and the row goes with its device anyway
-    sa.Column("stage", sa.String(16), nullable=False, index=True),
+    sa.Column("stage", sa.String(16), nullable=False),
     sa.Column("since_session_pk", BIG),
     sa.Column("since_t", sa.Double),
     sa.Column("since_at", Instant, nullable=False),
@@ -145,21 +152,36 @@ installations = sa.Table(
     sa.Column("last_data_at", Instant, index=True),
     sa.Column("revision", sa.BigInteger, nullable=False),
     sa.Column("watch", sa.JSON(none_as_null=True)),
+    _device_id(),
+    sa.Index("ix_installations_stage_device_id", "stage", "device_id"),
 )
 
 estimates = sa.Table(
     "estimates",
     metadata,
     sa.Column("pk", BIG, primary_key=True),
-    _session(nullable=False),
+    _device(nullable=False),
+    sa.Column("session_pk", BIG, nullable=False),  # no foreign key, as above
     sa.Column("t_first", sa.Double, nullable=False),
     sa.Column("t_last", sa.Double, nullable=False),
     sa.Column("size", sa.Integer, nullable=False),
     sa.Column("changes", sa.Integer, nullable=False),
     sa.Column("rows", sa.LargeBinary, nullable=False),
     sa.Column("received_at", Instant, nullable=False, index=True),
-    sa.Index("ix_estimates_session_pk_pk", "session_pk", "pk"),
+    sa.Index("ix_estimates_device_pk_received_at", "device_pk", "received_at"),
     sqlite_autoincrement=True,
+)
+
+estimates_coarse = sa.Table(
+    "estimates_coarse",
+    metadata,
+    _device(primary_key=True),
+    sa.Column("day", sa.Integer, primary_key=True, autoincrement=False, index=True),
+    sa.Column("session_pk", BIG, primary_key=True, autoincrement=False),  # no foreign key, as above
+    sa.Column("t_first", sa.Double, nullable=False),
+    sa.Column("t_last", sa.Double, nullable=False),
+    sa.Column("sketch", sa.LargeBinary, nullable=False),  # before `rows`: SQLite reads a long row only as far as asked
+    sa.Column("rows", sa.LargeBinary, nullable=False),
 )
 
 mounts = sa.Table(
@@ -194,8 +216,12 @@ alerts = sa.Table(
     sa.Column("resolved_at", Instant),
     sa.Column("resolved_by", NAME),
     sa.Column("resolve_note", sa.Text),
-    sa.Index("ix_alerts_device_pk_pk", "device_pk", "pk"),
-    sa.Index("ix_alerts_state_pk", "state", "pk"),
+    _device_id(),
+    sa.Index("ix_alerts_opened_at_pk", "opened_at", "pk"),
+    sa.Index("ix_alerts_device_pk_opened_at_pk", "device_pk", "opened_at", "pk"),
+    sa.Index("ix_alerts_state_opened_at_pk", "state", "opened_at", "pk"),
+    sa.Index("ix_alerts_kind_opened_at_pk", "kind", "opened_at", "pk"),
+    sa.Index("ix_alerts_severity_opened_at_pk", "severity", "opened_at", "pk"),
     sqlite_autoincrement=True,
 )
 alert_unresolved = alerts.c.state != sa.literal_column("'resolved'")
@@ -205,6 +231,21 @@ sa.Index(
     alerts.c.device_pk,
     alerts.c.kind,
     unique=True,
+    sqlite_where=alert_unresolved,
+    postgresql_where=alert_unresolved,
+)
+sa.Index(
+    "ix_alerts_unresolved_device_id",
+    alerts.c.device_id,
+    alerts.c.device_pk,
+    sqlite_where=alert_unresolved,
+    postgresql_where=alert_unresolved,
+)
+"""Whether a device has open alerts is asked by its id: SQLite would take the number for the index of all alerts."""
+sa.Index(
+    "ix_alerts_unresolved_kind_severity",
+    alerts.c.kind,
+    alerts.c.severity,
     sqlite_where=alert_unresolved,
     postgresql_where=alert_unresolved,
 )

@@ -1,4 +1,4 @@
-"""`livella db`: bring the database up to date, back it up, restore it."""
+"""`livella db`: bring the database up to date, back it up, restore it, check it."""
 
 import os
 import shutil
@@ -35,7 +35,7 @@ def backup(flags: dict[str, Any], out: Path) -> None:
     if out.exists():
         output.fail(f"{out}: is there already", output.UNREADABLE)
     with opened(configure(flags)) as context:
-        _require_tables(context.database)
+        _require_tables(context.database, "back up")
         unfinished = out.with_name(f"{out.name}.part")
         try:
             unfinished.touch(ONLY_OWNER, exist_ok=False)
@@ -59,13 +59,33 @@ def restore(flags: dict[str, Any], source: Path, replace: bool) -> None:
     typer.echo(f"Restored from {source}.")
 
 
+def check(flags: dict[str, Any]) -> None:
+    """Look for damage, also while the service runs; on PostgreSQL only for missing migrations (see `pg_amcheck`)."""
+    with opened(configure(flags)) as context:
+        _require_tables(context.database, "check")
+        problems = _damage(context.database) if context.database.is_sqlite else []
+        with context.database.read() as tx:
+            if not migrations.is_newest(tx):
+                problems.append("It is not of this version: `livella db migrate` brings it up to date.")
+    if problems:
+        output.fail("\n".join(problems))
+    typer.echo("The database is sound.")
+
+
+def _damage(database: Database) -> list[str]:
+    with _sqlite(database) as live:
+        found = [str(row[0]) for row in live.execute("PRAGMA integrity_check")]
+        orphans = live.execute("PRAGMA foreign_key_check").fetchall()
+    return [line for line in found if line != "ok"] + [f"{row[0]}: row {row[1]} belongs to nothing" for row in orphans]
+
+
 def _has_tables(database: Database) -> bool:
     return sa.inspect(database.engine).has_table(VERSION_TABLE)
 
 
-def _require_tables(database: Database) -> None:
+def _require_tables(database: Database, to_do: str) -> None:
     if not _has_tables(database):
-        output.fail("There is nothing to back up: the database is empty.", output.UNREADABLE)
+        output.fail(f"There is nothing to {to_do}: the database is empty.", output.UNREADABLE)
 
 
 def _write_backup(database: Database, out: Path) -> None:

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Depends, Path, Query
 from pydantic import AwareDatetime
 
 from api import schemas
-from api.dependencies import BeforeNumber, CurrentContext, Limit, Manager, Requires
+from api.dependencies import BeforePlace, CurrentContext, Limit, Manager, Requires
 from api.services import alerting, paging, presenting
 from api.services.access import Role
 from storage import alerts
@@ -19,7 +19,7 @@ Number = Annotated[int, Path(ge=1, le=2**63 - 1)]
 @router.get("")
 def list_alerts(
     context: CurrentContext,
-    before: BeforeNumber,
+    before: BeforePlace,
     state: schemas.AlertState | None = None,
     kind: schemas.AlertKind | None = None,
     severity: schemas.Severity | None = None,
@@ -31,8 +31,8 @@ def list_alerts(
     """List alerts, newest first."""
     wanted = alerts.Filter(state, kind, severity, device_id, since, until)
     with context.database.read() as tx:
-        rows = alerts.page(tx, limit + 1, before, wanted)
-    return paging.page(rows, limit, lambda row: row.pk, presenting.alert)
+        rows = alerts.page(tx, limit + 1, None if before is None else alerts.Place(*before), wanted)
+    return paging.page(rows, limit, lambda row: paging.place(row.opened_at, row.pk), presenting.alert)
 
 
 @router.get("/{alert_id}")

@@ -23,7 +23,9 @@ def register_device(draft: schemas.DeviceDraft, context: CurrentContext) -> sche
 def list_devices(
     context: CurrentContext,
     after: AfterText,
-    q: Annotated[schemas.Words | None, Query(description="Found in id, name, vehicle or notes.")] = None,
+    q: Annotated[
+        schemas.Words | None, Query(description="Found in id, name, vehicle or notes (their first 1000 characters).")
+    ] = None,
     stage: schemas.StageName | None = None,
     has_open_alert: bool | None = None,
     limit: Limit = 100,

@@ -132,7 +132,7 @@ class Calibration:
     def _record(self, session: Session, outcome: core.Outcome, t_last: float, received_at: datetime) -> None:
         """Keep what a chunk brought: history, mountings, alerts, status."""
         before = STAGES[self.row.stage]
-        history.append(self.tx, session.pk, outcome.estimates, before, received_at)
+        history.append(self.tx, self.row.device_pk, session.pk, outcome.estimates, before, received_at)
         for event in outcome.events:
             self._follow(session, event)
         since = stage_began(before, outcome, t_last)

@@ -1,6 +1,5 @@
-"""The angle history: packed for storage, thinned for charts."""
+"""The angle history: fine for some days, then a point a minute; thinned for charts."""
 
-from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
@@ -9,59 +8,61 @@ from numpy.typing import NDArray
 
 import core
 from api import schemas
-from storage import estimates
+from api.services.history_rows import Rows, pack, spaced, unpack
+from storage import coarse_estimates, estimates
 from storage.database import ReadSession, WriteSession
+from storage.estimates import Block
 from storage.models import EPOCH, MICROSECOND, microseconds
 
-ROW = np.dtype(
-    [
-        ("t", "<f8"),  # s, session clock
-        ("quaternion", "<f4", 4),
-        ("sigma", "<f4", 3),  # rad
-        ("progress", "<f4"),
-        ("stage", "u1"),
-        ("stable", "u1"),
-        ("reliable", "u1"),
-    ]
-)
-"""A row of history as it is stored, 43 bytes."""
-
-Rows = NDArray[np.void]
-OVERSAMPLING = 4
-"""Rows read for each point of a chart, at most; of a longer history only some blocks are read."""
+OVERSAMPLING = 2
+"""Rows read for each point of a chart, about; of a longer history only some blocks are read."""
+SKETCH = 1800.0
+"""s between two rows of the sketch that is kept of each coarse day, for charts over months"""
+FINEST = 1e-3
+"""s; no rows are closer"""
 
 
-def pack(rows: core.Estimates) -> Rows:
-    """Give estimates as stored rows."""
-    packed = np.empty(rows.t.size, ROW)
-    for name in ROW.names or ():
-        packed[name] = getattr(rows, name)
-    return packed
-
-
-def append(tx: WriteSession, session_pk: int, rows: core.Estimates, stage_before: int, now: datetime) -> None:
+def append(
+    tx: WriteSession, device_pk: int, session_pk: int, rows: core.Estimates, stage_before: int, now: datetime
+) -> None:
     """Append the estimates of a chunk."""
     if rows.t.size == 0:
         return
     changes = int(np.count_nonzero(np.diff(rows.stage, prepend=stage_before)))
     span = (float(rows.t[0]), float(rows.t[-1]))
-    estimates.add(tx, session_pk, span, (rows.t.size, changes), pack(rows).tobytes(), now)
+    estimates.add(tx, device_pk, session_pk, span, (rows.t.size, changes), pack(rows).tobytes(), now)
 
 
 def read(
     tx: ReadSession, device_pk: int, start: datetime | None, end: datetime | None, max_points: int
 ) -> schemas.Estimates:
     """Give at most `max_points` rows between two moments: the first, the last, changes of stage, and evenly between."""
-    marks = estimates.marks(tx, device_pk, start, end)
-    blocks = estimates.blocks(tx, choose_blocks(marks, max_points))
-    parts = [np.frombuffer(block.rows, ROW) for block in blocks]
-    rows = np.concatenate([np.empty(0, ROW), *parts])
-    of_block = np.repeat(np.arange(len(parts)), [part.size for part in parts])
+    blocks, spacing = _blocks(tx, device_pk, start, end, max_points)
+    rows = unpack([block.rows for block in blocks])
+    of_block = np.repeat(np.arange(len(blocks)), [len(block.rows) // rows.itemsize for block in blocks])
     started_at = np.array([microseconds(block.started_at) for block in blocks], np.int64)
     time = started_at[of_block] + np.rint(rows["t"] * 1e6).astype(np.int64)
     inside = np.flatnonzero(_within(time, start, end))
+    if inside.size > max_points:
+        inside = inside[_evenly_in_time(rows[inside], spacing, started_at[of_block[inside]])]
     kept = inside[thin(rows["stage"][inside], max_points)]
+    kept = kept[np.argsort(time[kept], kind="stable")]  # sessions overlap when the clock was set back
     return _columns([blocks[i].session for i in of_block[kept]], time[kept], rows[kept])
+
+
+def _blocks(
+    tx: ReadSession, device_pk: int, start: datetime | None, end: datetime | None, max_points: int
+) -> tuple[list[Block], float]:
+    """Read the blocks of a period, coarse and fine, as many as a chart needs; give the spacing of its rows too, s."""
+    days, period = coarse_estimates.days(start, end), (start, end)
+    fine = estimates.extent(tx, device_pk, period)
+    long_ago = coarse_estimates.seconds(tx, device_pk, days)
+    if start is not None and end is not None:
+        long_ago = min(long_ago, max((end - start).total_seconds(), 0.0))  # less than the days in which it lies
+    spacing = (long_ago + fine.seconds) / (OVERSAMPLING * max_points)
+    few = long_ago == 0 and fine.rows <= OVERSAMPLING * max_points
+    coarse = coarse_estimates.blocks(tx, device_pk, days, sketch=spacing >= SKETCH)
+    return coarse + estimates.blocks(tx, device_pk, period, None if few else max(spacing, FINEST)), spacing
 
 
 def _within(time: NDArray[np.int64], start: datetime | None, end: datetime | None) -> NDArray[np.bool_]:
@@ -70,11 +71,11 @@ def _within(time: NDArray[np.int64], start: datetime | None, end: datetime | Non
     return np.full(time.shape, True) & after & before
 
 
-def choose_blocks(marks: Sequence[estimates.Mark], max_points: int) -> list[int]:
-    """Choose which blocks to read: all of a short history; of a long one evenly, and those where the stage changes."""
-    step = max(1, sum(mark.size for mark in marks) // (OVERSAMPLING * max_points))
-    last = len(marks) - 1
-    return [mark.pk for i, mark in enumerate(marks) if i % step == 0 or i == last or mark.changes]
+def _evenly_in_time(rows: Rows, spacing: float, started_at: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Choose rows as far apart where they are fine as where they are coarse; the last one too."""
+    if spacing == 0.0:
+        return np.arange(rows.size)
+    return np.union1d(spaced(rows, spacing, started_at), [rows.size - 1])
 
 
 def thin(stage: NDArray[Any], max_points: int) -> NDArray[np.int64]:
@@ -95,7 +96,7 @@ def _evenly(n: int, count: int) -> NDArray[np.int64]:
 
 def _columns(session: list[str], time: NDArray[np.int64], rows: Rows) -> schemas.Estimates:
     quaternion = core.quaternion.normalise(rows["quaternion"])
-    angles = np.degrees([core.quaternion.angles(q) for q in quaternion]).reshape(-1, 3).round(6).T.tolist()
+    angles = np.degrees(core.quaternion.all_angles(quaternion)).round(6).T.tolist()
     stages = {stage.value: stage.word for stage in core.Stage}
     return schemas.Estimates.model_validate(
         {

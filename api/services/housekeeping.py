@@ -1,47 +1,74 @@
-"""What is done now and then: gaps declared lost, old rows removed. Any number of processes may do it at once."""
+"""What is done now and then: a table of jobs.
+
+Most are done by the leader alone. All of them may be broken off anywhere and done twice: each call is one small
+transaction, or several, so that no upload waits long for them.
+"""
 
 import logging
 from collections.abc import Callable
-from datetime import timedelta
+from typing import NamedTuple
 
 import anyio
-from anyio import to_thread
+from anyio import CancelScope, to_thread
 
-from api.services import ingest, webhooks_dispatch
+from api.services import ingest, retention, webhooks_dispatch
 from api.services.context import Context
-from storage import chunks, deliveries, estimates, events
+from api.services.leading import Leadership
 
 log = logging.getLogger(__name__)
 
-GAP_INTERVAL = 5.0
-"""s between two looks for gaps that have been open too long"""
-TIDY_INTERVAL = 300.0
-"""s between two removals of old rows"""
+
+class Job(NamedTuple):
+    """Something done now and then; `work` returns True when there is more to do at once."""
+
+    name: str
+    interval: float
+    """s between two calls"""
+    work: Callable[[Context], bool | None]
+    leader_only: bool = True
 
 
-def tidy(context: Context) -> None:
-    """Remove what is kept no longer."""
-    now, settings = context.clock(), context.settings
-    oldest = now - timedelta(days=settings.history_days)
-    with context.database.write() as tx:
-        events.forget(tx, now - timedelta(minutes=settings.stream_minutes))
-        estimates.forget(tx, oldest)
-        chunks.forget(tx, oldest)
-        deliveries.forget(tx, oldest)
+JOBS = (
+    Job("gaps open too long", 5.0, ingest.close_gaps),
+    Job("fine history to coarse", 60.0, retention.coarsen),
+    Job("rows kept no longer", 60.0, retention.tidy),
+)
+PAUSE = 0.05
+"""s between two calls of a job that has more to do, in which others may write"""
 
 
 async def run(context: Context) -> None:
     """Keep house until cancelled."""
-    async with anyio.create_task_group() as tasks:
-        tasks.start_soon(_every, GAP_INTERVAL, ingest.close_gaps, context)
-        tasks.start_soon(_every, TIDY_INTERVAL, tidy, context)
-        tasks.start_soon(webhooks_dispatch.run, context)
+    leadership = Leadership(context)
+    try:
+        async with anyio.create_task_group() as tasks:
+            for job in JOBS:
+                tasks.start_soon(_repeat, job, context, leadership)
+            tasks.start_soon(webhooks_dispatch.run, context)
+    finally:
+        with CancelScope(shield=True):
+            await to_thread.run_sync(_resign, leadership)
 
 
-async def _every(seconds: float, work: Callable[[Context], None], context: Context) -> None:
+def do(job: Job, context: Context, leadership: Leadership) -> bool:
+    """Call a job once, if it is for this process to do; True when there is more to do."""
+    if job.leader_only and not leadership.held():
+        return False
+    return job.work(context) is True
+
+
+async def _repeat(job: Job, context: Context, leadership: Leadership) -> None:
     while True:
+        more = False
         try:
-            await to_thread.run_sync(work, context)
+            more = await to_thread.run_sync(do, job, context, leadership)
         except Exception:
-            log.exception("housekeeping failed; it is tried again in %.0f s", seconds)
-        await anyio.sleep(seconds)
+            log.exception("housekeeping failed (%s); it is tried again in %.0f s", job.name, job.interval)
+        await anyio.sleep(PAUSE if more else job.interval)
+
+
+def _resign(leadership: Leadership) -> None:
+    try:
+        leadership.give_up()
+    except Exception as error:
+        log.warning("the lease runs out by itself, it could not be given up: %s", type(error).__name__)

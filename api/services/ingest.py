@@ -2,8 +2,8 @@
 
 Chunks of a session take effect in the order of their numbers, exactly once. One that is ahead of its turn waits,
 durably; the gap before it is declared lost when the oldest waiting chunk has waited `gap_timeout`, when
-`max_waiting_chunks` wait, or when a newer session begins. Then time goes on: a chunk for a gap declared lost, like
-one of a session that has ended, is refused, because applying it would run time backwards.
+`max_waiting_chunks` wait in all of the device's sessions, or when a newer session begins. Then time goes on: a chunk
+for a gap declared lost, like one of a session that has ended, is refused, because applying it would run time backwards.
 """
 
 import logging
@@ -107,14 +107,28 @@ def _read(calibration: Calibration, session: Session, parsed: ParsedLog) -> Read
 
 def catch_up(calibration: Calibration) -> None:
     """Apply the waiting chunks whose turn has come, declaring the gaps that have been open long enough."""
-    for session_pk in chunks.sessions_waiting(calibration.tx, calibration.row.device_pk):
+    waiting = _sessions_waiting(calibration)
+    for session_pk in waiting[:-1]:
+        _drain(calibration, session_pk, declare_gaps=_too_many(calibration, waiting))
+    for session_pk in waiting[-1:]:
         _drain(calibration, session_pk, declare_gaps=False)
+
+
+def _sessions_waiting(calibration: Calibration) -> list[int]:
+    return chunks.sessions_waiting(calibration.tx, calibration.row.device_pk, calibration.row.session_pk)
+
+
+def _too_many(calibration: Calibration, sessions_waiting: list[int]) -> bool:
+    """Tell whether too many chunks wait in all: a device that begins session after session has its bound too."""
+    number = sum(chunks.waiting(calibration.tx, session_pk).number for session_pk in sessions_waiting)
+    return number >= calibration.context.settings.max_waiting_chunks
 
 
 def close_gaps(context: Context) -> None:
     """Declare the gaps that have been open too long, on every device; called now and then."""
+    now = context.clock()
     with context.database.read() as tx:
-        overdue = chunks.devices_waiting_since(tx, context.clock() - _gap_timeout(context))
+        overdue = chunks.devices_waiting_since(tx, now - _gap_timeout(context), now)
     for device_id in overdue:
         try:
             _close_gaps_of(context, device_id)
@@ -129,6 +143,7 @@ def close_gaps(context: Context) -> None:
 def _close_gaps_of(context: Context, device_id: str) -> None:
     with context.database.write() as tx:
         calibration = Calibration.open(tx, context, device_id)
+        chunks.bring_back(tx, _sessions_waiting(calibration), calibration.now)
         catch_up(calibration)
         calibration.save()
 
@@ -139,7 +154,7 @@ def _refuse_late(calibration: Calibration, session: Session, seq: int) -> None:
         raise SessionEndedError("A newer session of this device has begun; do not send this chunk again.")
     if seq < session.next_seq:
         raise SequencePassedError(
-            f"The gap at chunk {seq} was declared lost and later chunks were applied; do not send this chunk again."
+            f"Chunk {seq} came in long ago, or was declared lost, and later ones were applied; do not send it again."
         )
 
 
@@ -156,7 +171,7 @@ def _enter(calibration: Calibration, session: Session) -> None:
     """Make this the current session; what waits in the ones before it is applied first, their gaps are lost."""
     if calibration.row.session_pk == session.pk:
         return
-    for session_pk in chunks.sessions_waiting(calibration.tx, calibration.row.device_pk):
+    for session_pk in _sessions_waiting(calibration):
         if session_pk < session.pk:
             _drain(calibration, session_pk, declare_gaps=True)
     calibration.begin(session)

@@ -3,10 +3,12 @@
 import binascii
 from base64 import b64decode, urlsafe_b64encode
 from collections.abc import Callable
+from datetime import datetime
 from typing import TypeVar
 
 from api import schemas
 from api.services.errors import CursorError
+from storage.models import EPOCH, MICROSECOND, microseconds
 
 INVALID = "Give the cursor exactly as `next_cursor` of the page before."
 
@@ -36,6 +38,19 @@ def decode_number(cursor: str) -> int:
     if not (text.isascii() and text.isdigit() and len(text) < 19):
         raise CursorError(INVALID)
     return int(text)
+
+
+def place(moment: datetime, number: int) -> str:
+    """Give the key of an item in a list ordered by time and number."""
+    return f"{microseconds(moment)}.{number}"
+
+
+def decode_place(cursor: str) -> tuple[datetime, int]:
+    """Give the moment and the number of the key that `encode` was given."""
+    parts = decode(cursor).split(".")
+    if len(parts) != 2 or not all(part.isascii() and part.isdigit() and len(part) < 17 for part in parts):
+        raise CursorError(INVALID)
+    return EPOCH + int(parts[0]) * MICROSECOND, int(parts[1])
 
 
 def page(rows: list[R], limit: int, key: Callable[[R], str | int], present: Callable[[R], S]) -> schemas.Page[S]:

@@ -1,4 +1,8 @@
-"""What a fleet needs: expiring keys, webhooks with their deliveries, an audit trail, rules' memory, leases."""
+"""What a fleet needs: expiring keys, webhooks with their deliveries, an audit trail, rules' memory, leases.
+
+History is found by device and time from now on, however many sessions a device has had, and ages into coarse history.
+Lists come from an index in their order, and what is searched is one text.
+"""
 
 import sqlalchemy as sa
 from alembic import op
@@ -18,21 +22,51 @@ ADDED = (
     ("api_keys", "created_by", sa.String(128)),
     ("installations", "watch", sa.JSON(none_as_null=True)),
 )
-INDEXES = (
-    ("ix_alerts_state_pk", "alerts", ["state", "pk"]),
-    ("ix_installations_last_data_at", "installations", ["last_data_at"]),
+COPIES = (
+    ("devices", "search", sa.Text()),
+    ("installations", "device_id", DEVICE_ID),
+    ("alerts", "device_id", DEVICE_ID),
 )
-"""Columns and indexes for tables that are there; columns never in a batch, see 0002."""
+INDEXES = (
+    ("ix_sessions_device_pk_pk", "sessions", ["device_pk", "pk"]),
+    ("ix_installations_last_data_at", "installations", ["last_data_at"]),
+    ("ix_installations_stage_device_id", "installations", ["stage", "device_id"]),
+    ("ix_alerts_opened_at_pk", "alerts", ["opened_at", "pk"]),
+    ("ix_alerts_device_pk_opened_at_pk", "alerts", ["device_pk", "opened_at", "pk"]),
+    ("ix_alerts_state_opened_at_pk", "alerts", ["state", "opened_at", "pk"]),
+    ("ix_alerts_kind_opened_at_pk", "alerts", ["kind", "opened_at", "pk"]),
+    ("ix_alerts_severity_opened_at_pk", "alerts", ["severity", "opened_at", "pk"]),
+)
+UNRESOLVED = sa.text("state != 'resolved'")
+UNRESOLVED_INDEXES = (
+    ("ix_alerts_unresolved_device_id", ["device_id", "device_pk"]),
+    ("ix_alerts_unresolved_kind_severity", ["kind", "severity"]),
+)
+FORMER_INDEXES = (
+    ("ix_installations_stage", "installations", ["stage"]),
+    ("ix_alerts_device_pk_pk", "alerts", ["device_pk", "pk"]),
+)
+"""Columns and indexes for tables that are there; in a batch only where nothing refers to the table, see 0002."""
+AUTOINCREMENT = {"sqlite_autoincrement": True}
+"""SQLite's copy of a table has to be told."""
 
 
 def upgrade() -> None:
     for table, name, kind in ADDED:
         op.add_column(table, sa.Column(name, kind, nullable=True))
+    for table, name, kind in COPIES:
+        op.add_column(table, sa.Column(name, kind, nullable=False, server_default=""))
+    _fill_copies()
     for name, table, columns in INDEXES:
         op.create_index(name, table, columns, unique=False)
+    for name, table, _ in FORMER_INDEXES:
+        op.drop_index(name, table_name=table)
+    for name, columns in UNRESOLVED_INDEXES:
+        op.create_index(name, "alerts", columns, unique=False, sqlite_where=UNRESOLVED, postgresql_where=UNRESOLVED)
     _webhooks()
     _deliveries()
     _audit()
+    _history()
     op.create_table(
         "leases",
         sa.Column("name", sa.String(64), nullable=False),
@@ -40,6 +74,16 @@ def upgrade() -> None:
         sa.Column("until", sa.BigInteger(), nullable=False),
         sa.PrimaryKeyConstraint("name", name="pk_leases"),
     )
+
+
+def _fill_copies() -> None:
+    for table in ("installations", "alerts"):
+        op.execute(f"UPDATE {table} SET device_id = (SELECT id FROM devices WHERE devices.pk = {table}.device_pk)")  # noqa: S608
+    connection = op.get_bind()
+    rows = connection.execute(sa.text("SELECT pk, id, name, vehicle, notes FROM devices")).all()
+    texts = [{"pk": pk, "search": "\n".join(filter(None, words)).casefold()[:1000]} for pk, *words in rows]
+    if texts:
+        connection.execute(sa.text("UPDATE devices SET search = :search WHERE pk = :pk"), texts)
 
 
 def _webhooks() -> None:
@@ -118,10 +162,53 @@ def _audit() -> None:
     op.create_index("ix_audit_at", "audit", ["at"], unique=False)
 
 
+def _history() -> None:
+    op.add_column("estimates", sa.Column("device_pk", BIG, nullable=True))
+    op.execute(
+        "UPDATE estimates SET device_pk = (SELECT device_pk FROM sessions WHERE sessions.pk = estimates.session_pk)"
+    )
+    op.drop_index("ix_estimates_session_pk_pk", table_name="estimates")
+    with op.batch_alter_table("estimates", table_kwargs=AUTOINCREMENT) as table:
+        table.drop_constraint("fk_estimates_session_pk", type_="foreignkey")
+        table.alter_column("device_pk", existing_type=BIG, nullable=False)
+        table.create_foreign_key("fk_estimates_device_pk", "devices", ["device_pk"], ["pk"], ondelete="CASCADE")
+    op.create_index("ix_estimates_device_pk_received_at", "estimates", ["device_pk", "received_at"], unique=False)
+    op.create_table(
+        "estimates_coarse",
+        sa.Column("device_pk", BIG, nullable=False),
+        sa.Column("day", sa.Integer(), autoincrement=False, nullable=False),
+        sa.Column("session_pk", BIG, autoincrement=False, nullable=False),
+        sa.Column("t_first", sa.Double(), nullable=False),
+        sa.Column("t_last", sa.Double(), nullable=False),
+        sa.Column("sketch", sa.LargeBinary(), nullable=False),
+        sa.Column("rows", sa.LargeBinary(), nullable=False),
+        sa.ForeignKeyConstraint(
+            ["device_pk"], ["devices.pk"], name="fk_estimates_coarse_device_pk", ondelete="CASCADE"
+        ),
+        sa.PrimaryKeyConstraint("device_pk", "day", "session_pk", name="pk_estimates_coarse"),
+    )
+    op.create_index("ix_estimates_coarse_day", "estimates_coarse", ["day"], unique=False)
+
+
+def _history_undone() -> None:
+    op.drop_table("estimates_coarse")
+    op.drop_index("ix_estimates_device_pk_received_at", table_name="estimates")
+    with op.batch_alter_table("estimates", table_kwargs=AUTOINCREMENT) as table:
+        table.drop_constraint("fk_estimates_device_pk", type_="foreignkey")
+        table.drop_column("device_pk")
+        table.create_foreign_key("fk_estimates_session_pk", "sessions", ["session_pk"], ["pk"], ondelete="CASCADE")
+    op.create_index("ix_estimates_session_pk_pk", "estimates", ["session_pk", "pk"], unique=False)
+
+
 def downgrade() -> None:
     for table in ("leases", "audit", "webhook_deliveries", "webhooks"):
         op.drop_table(table)
+    _history_undone()
+    for name, _ in UNRESOLVED_INDEXES:
+        op.drop_index(name, table_name="alerts")
+    for name, table, columns in FORMER_INDEXES:
+        op.create_index(name, table, columns, unique=False)
     for name, table, _ in reversed(INDEXES):
         op.drop_index(name, table_name=table)
-    for table, name, _ in reversed(ADDED):
+    for table, name, _ in (*reversed(COPIES), *reversed(ADDED)):
         op.drop_column(table, name)

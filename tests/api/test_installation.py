@@ -9,7 +9,6 @@ import core
 from api.services import history, presenting
 from api.services.calibration import stage_began
 from storage.database import Database
-from storage.estimates import Mark
 from storage.models import installations
 from tests.conftest import Clock
 from tests.drives import CHUNK_SECONDS, chunks, plain, remounted
@@ -218,14 +217,6 @@ def test_thinning_keeps_first_last_and_changes(max_points: int, changes: int) ->
         assert set(at) <= set(kept.tolist())
     if max_points >= 100:
         assert kept.size == 100
-
-
-def test_of_a_long_history_only_some_blocks_are_read() -> None:
-    marks = [Mark(pk, 12, int(pk in {301, 777})) for pk in range(1000)]
-    chosen = history.choose_blocks(marks, 100)
-    assert {0, 301, 777, 999} <= set(chosen)
-    assert sum(marks[pk].size for pk in chosen) <= 100 * (history.OVERSAMPLING + 3)
-    assert history.choose_blocks(marks[:30], 100) == list(range(30))
 
 
 # ---------------------------------------------------------------- words

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import httpx
 import pytest
 
-from api.services import housekeeping, startup
+from api.services import retention, startup
 from api.services.context import Context, utc_now
 from api.settings import Settings
 from storage import events
@@ -197,7 +197,7 @@ def test_a_stream_that_cannot_be_resumed_says_so(database_url: str, tmp_path: Pa
         api.add_device("b")
         listener.wait_for(2)
         with database.write() as tx:
-            events.forget(tx, utc_now() + timedelta(minutes=1))
+            events.forget(tx, utc_now() + timedelta(minutes=1), 100)
         for lost in (last[:-1] + "0", "nonsense", "1.2.3"):
             resumed = Listener(api, lost)
             assert [told.type for told in resumed.wait_for(1)] == ["reset"]
@@ -216,7 +216,7 @@ def test_old_events_are_removed_by_housekeeping(settings: Settings, clock: Clock
     with context.database.write() as tx:
         events.add(tx, "b", "device", "{}", clock())
     clock.advance(2)
-    housekeeping.tidy(context)
+    retention.tidy(context)
     with context.database.read() as tx:
         (left,) = events.after(tx, Position(0, 0))
         assert left.device_id == "b"

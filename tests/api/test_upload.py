@@ -339,3 +339,21 @@ def test_a_waiting_chunk_that_cannot_be_read_any_more_is_passed_over(
     with database.read() as tx:
         receipts = tx.connection.execute(sa.select(chunk_table.c.state, chunk_table.c.rejected)).all()
     assert sorted(map(str, receipts)) == ["('applied', {'unusable': 1500})", "('applied', {})", "('applied', {})"]
+
+
+def test_chunks_waiting_in_many_sessions_are_bounded_together(
+    settings: Settings, clock: Clock, database: Database
+) -> None:
+    """A device that is switched on again and again, with the first chunk of each session lost."""
+    few = settings.model_copy(update={"max_waiting_chunks": 4})
+    with TestClient(create_app(few, clock)) as client:
+        api = Api(client)
+        api.wait_until_ready()
+        device = api.add_device()
+        for n in range(10):
+            device.send(chunks()[1], 1, session=f"s{n}", expect=202)
+            with database.read() as tx:
+                waiting = tx.value(sa.select(sa.func.count()).where(chunk_table.c.state == "waiting"))
+            assert waiting < 4
+        device.send(chunks()[1], 1, session="s0", expect=200)
+        device.send(chunks()[0], 0, session="s0", expect=409)

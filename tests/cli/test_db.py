@@ -1,5 +1,7 @@
 import os
+import sqlite3
 import stat
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -85,6 +87,7 @@ def test_a_file_that_is_no_backup_changes_nothing(tmp_path: Path, body: bytes) -
 
 def test_what_cannot_be_done(tmp_path: Path) -> None:
     empty = ["--data-dir", tmp_path / "empty"]
+    assert "nothing to check" in db("check", *empty).stderr
     assert "nothing to back up" in db("backup", tmp_path / "copy", *empty).stderr
     assert "no such file" in db("restore", tmp_path / "missing", *empty).stderr
     (tmp_path / "there").touch()
@@ -96,3 +99,34 @@ def test_migrate_twice(tmp_path: Path) -> None:
     for _ in range(2):
         assert db("migrate", "--data-dir", tmp_path).exit_code == 0
     assert (tmp_path / "livella.db").exists()
+
+
+def test_a_sound_database_is_called_sound(database_url: str) -> None:
+    add_device(database_url, "box")
+    done = db("check", "--database-url", database_url)
+    assert (done.exit_code, done.stdout.strip()) == (0, "The database is sound.")
+
+
+def test_damage_is_told(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path / 'livella.db'}"
+    add_device(url, "box")
+    with closing(sqlite3.connect(tmp_path / "livella.db")) as connection, connection:
+        connection.execute("INSERT INTO sessions (device_pk, name, next_seq, created_at) VALUES (77, 's', 0, 0)")
+        connection.execute("UPDATE alembic_version SET version_num = '0002'")
+    done = db("check", "--database-url", url)
+    assert done.exit_code == 1
+    assert "sessions: row 1 belongs to nothing" in done.stderr
+    assert "livella db migrate" in done.stderr
+
+
+def test_a_damaged_file_is_told(tmp_path: Path) -> None:
+    file = tmp_path / "livella.db"
+    add_device(f"sqlite:///{file}", "box")
+    with closing(sqlite3.connect(file)) as connection:
+        connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+        page = connection.execute("SELECT rootpage FROM sqlite_master WHERE name = 'devices'").fetchone()[0]
+        size = connection.execute("PRAGMA page_size").fetchone()[0]
+    with file.open("r+b") as raw:
+        raw.seek((page - 1) * size + size // 2)
+        raw.write(b"\xff" * (size // 2))
+    assert db("check", "--database-url", f"sqlite:///{file}").exit_code == 1

@@ -150,6 +150,16 @@ def test_angles_of_any_rotation_are_in_range_and_true(q: Floats) -> None:
     assert quaternion.angle_between(quaternion.from_angles(roll, pitch, yaw), q) < 3e-6
 
 
+@given(
+    st.lists(
+        st.one_of(quaternions(), st.tuples(HURTING_ANGLES, PITCHES).map(lambda a: quaternion.from_angles(*a, 0.3)))
+    )
+)
+def test_angles_of_many_rotations_are_those_of_each(several: list[Floats]) -> None:
+    each = np.array([quaternion.angles(q) for q in several]).reshape(-1, 3)
+    np.testing.assert_allclose(quaternion.all_angles(several), each, rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("pitch", [pi / 2, -pi / 2])
 @pytest.mark.parametrize(("roll", "yaw"), [(0.3, 0.0), (0.0, -1.2), (0.7, 0.9), (3.0, 3.0)])
 def test_straight_up_or_down_roll_is_zero_and_the_rotation_true(roll: float, yaw: float, pitch: float) -> None:

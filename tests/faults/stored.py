@@ -28,7 +28,7 @@ def of_device(database: Database, device_id: str) -> dict[str, list[Any]]:
             .where(in_session)
             .order_by(chunks.c.seq),
             "estimates": sa.select(estimates.c.t_first, estimates.c.changes, estimates.c.rows)
-            .join(sessions)
+            .join(sessions, sessions.c.pk == estimates.c.session_pk)
             .where(in_session)
             .order_by(estimates.c.pk),
             "mounts": sa.select(mounts.c.n, mounts.c.t, mounts.c.quaternion, mounts.c.status).where(

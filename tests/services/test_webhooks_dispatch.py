@@ -12,7 +12,7 @@ from sqlalchemy.dialects import sqlite
 from standardwebhooks import Webhook as Library
 
 from api import schemas
-from api.services import fleet, housekeeping, publishing, webhooks, webhooks_queue
+from api.services import fleet, publishing, retention, webhooks, webhooks_queue
 from api.services.context import Context
 from api.services.webhooks_dispatch import CLAIM, Dispatcher
 from api.services.webhooks_sending import Sender, wait_asked_for
@@ -340,7 +340,7 @@ def test_old_deliveries_are_removed_and_counted_while_they_wait(world: World) ->
         assert webhooks.backlog(tx) == 0
     world.clock.advance(91 * DAY)
     world.alert("box-1")
-    housekeeping.tidy(world.context)
+    retention.tidy(world.context)
     assert [delivery.state for delivery in world.deliveries()] == ["pending"]
 
 
@@ -350,7 +350,7 @@ def test_what_still_waits_is_not_removed_however_old(world: World, receiver: Rec
     world.alert("box-1")
     world.dispatch()
     world.clock.advance(91 * DAY)
-    housekeeping.tidy(world.context)
+    retention.tidy(world.context)
     receiver.answer = Answer()
     webhooks.edit(world.context, world.pk, {"active": True})
     assert world.dispatch() == 1

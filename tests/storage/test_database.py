@@ -183,9 +183,9 @@ def test_removing_events_remembers_how_far(tables: Database) -> None:
         for n, name in enumerate("abc"):
             events.add(tx, name, "device", "{}", NOW + timedelta(seconds=n))
     with tables.write() as tx:
-        events.forget(tx, NOW)
+        events.forget(tx, NOW, 10)
         assert events.pruned(tx) == Position(0, 0)
-        events.forget(tx, NOW + timedelta(seconds=2))
+        events.forget(tx, NOW + timedelta(seconds=2), 10)
     with tables.read() as tx:
         (left,) = events.after(tx, Position(0, 0))
         assert left.device_id == "c"

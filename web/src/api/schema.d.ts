@@ -1551,7 +1551,7 @@ export interface operations {
     list_devices: {
         parameters: {
             query?: {
-                /** @description Found in id, name, vehicle or notes. */
+                /** @description Found in id, name, vehicle or notes (their first 1000 characters). */
                 q?: string | null;
                 stage?: ("waiting" | "aligning" | "settling" | "verifying" | "confirmed") | null;
                 has_open_alert?: boolean | null;

@@ -1,0 +1,1 @@
+"""What a large fleet and a long past cost."""

@@ -1,0 +1,138 @@
+"""Queries find what they look for by an index, in the order in which it is wanted, however much there is."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+import pytest
+from sqlalchemy import event
+
+from storage import alerts, chunks, coarse_estimates, devices, estimates, events, installations, leases, retention
+from storage.alerts import Filter, Place
+from storage.database import Database, ReadSession, WriteSession
+from storage.leases import Lease
+from storage.migrate import upgrade
+
+NOW = datetime(2024, 5, 6, 7, 8, 9, tzinfo=UTC)
+PERIOD = (NOW - timedelta(days=30), NOW)
+
+READS_ALL = ("Seq Scan on", "SCAN ")
+INSTALLATION: installations.Installation = installations.Installation(
+    1, None, None, "waiting", 1, 0.0, NOW, {}, last_data_at=None, revision=0
+)
+LISTS: dict[str, Callable[[ReadSession], object]] = {
+    "devices": lambda tx: devices.page(tx, 101, "m"),
+    "devices of a stage": lambda tx: devices.page(tx, 101, "m", stage="waiting"),
+    "devices with an alert": lambda tx: devices.page(tx, 101, "m", has_open_alert=True),
+    "devices without an alert": lambda tx: devices.page(tx, 101, "m", has_open_alert=False),
+    "devices of a stage with an alert": lambda tx: devices.page(tx, 101, stage="waiting", has_open_alert=True),
+    "devices of a stage without one": lambda tx: devices.page(tx, 101, stage="waiting", has_open_alert=False),
+    "alerts": lambda tx: alerts.page(tx, 101, None, Filter()),
+    "alerts from a place": lambda tx: alerts.page(tx, 101, Place(NOW, 7), Filter()),
+    "alerts in a state": lambda tx: alerts.page(tx, 101, Place(NOW, 7), Filter(state="open")),
+    "alerts of a kind": lambda tx: alerts.page(tx, 101, Place(NOW, 7), Filter(kind="gps_lost")),
+    "alerts of a severity": lambda tx: alerts.page(tx, 101, None, Filter(severity="critical")),
+    "alerts of a device": lambda tx: alerts.page(tx, 101, None, Filter(device_id="a")),
+    "alerts since": lambda tx: alerts.page(tx, 101, None, Filter(since=NOW)),
+    "alerts until": lambda tx: alerts.page(tx, 101, None, Filter(until=NOW)),
+}
+LOOKS: dict[str, Callable[[WriteSession], object]] = {
+    "counts of alerts": alerts.counts,
+    "counts of a device's alerts": lambda tx: alerts.counts(tx, 1),
+    "beside an installation": lambda tx: installations.beside(tx, INSTALLATION),
+    "extent of history": lambda tx: estimates.extent(tx, 1, PERIOD),
+    "all history": lambda tx: estimates.blocks(tx, 1, PERIOD, None),
+    "some history": lambda tx: estimates.blocks(tx, 1, PERIOD, 60.0),
+    "oldest history": lambda tx: estimates.device_of_oldest(tx, NOW),
+    "old history of a device": lambda tx: estimates.old_blocks(tx, 1, NOW, 100),
+    "removed history": lambda tx: estimates.remove(tx, [1, 2]),
+    "extent of coarse history": lambda tx: coarse_estimates.seconds(tx, 1, (1, 30)),
+    "coarse history": lambda tx: coarse_estimates.blocks(tx, 1, (1, 30), sketch=False),
+    "sketch of history": lambda tx: coarse_estimates.blocks(tx, 1, (1, 30), sketch=True),
+    "receipts that go": lambda tx: retention.receipts(tx, NOW, 100),
+    "deliveries that go": lambda tx: retention.deliveries(tx, NOW, 100),
+    "audit that goes": lambda tx: retention.audit_trail(tx, NOW, 100),
+    "coarse history that goes": lambda tx: retention.coarse_history(tx, 5, 100),
+    "events that go": lambda tx: events.forget(tx, NOW, 100),
+    "sessions that wait": lambda tx: chunks.sessions_waiting(tx, 1, 5),
+    "devices that wait": lambda tx: chunks.devices_waiting_since(tx, NOW, NOW),
+    "a lease": lambda tx: leases.take(tx, "x", Lease("me", NOW), NOW, NOW),
+}
+
+
+@contextmanager
+def plans(tx: ReadSession) -> Iterator[list[str]]:
+    """Give the plan of every statement of the block, a line for each step."""
+    ran: list[tuple[str, Any]] = []
+    steps: list[str] = []
+
+    def note(_connection: object, _cursor: object, statement: str, values: Any, *_rest: object) -> None:
+        ran.append((statement, values))
+
+    event.listen(tx.connection, "before_cursor_execute", note)
+    try:
+        yield steps
+    finally:
+        event.remove(tx.connection, "before_cursor_execute", note)
+    for statement, values in ran:
+        if not statement.startswith("INSERT"):
+            steps += _plan(tx, statement, values)
+
+
+def _plan(tx: ReadSession, statement: str, values: Any) -> list[str]:
+    explain = "EXPLAIN (COSTS OFF)" if tx.is_postgresql else "EXPLAIN QUERY PLAN"
+    return [str(row[-1]) for row in tx.connection.exec_driver_sql(f"{explain} {statement}", values)]
+
+
+@pytest.fixture
+def tables(database: Database) -> Database:
+    upgrade(database)
+    return database
+
+
+def look(tables: Database, query: Callable[[WriteSession], object]) -> list[str]:
+    with tables.write() as tx:
+        if tx.is_postgresql:
+            tx.connection.exec_driver_sql("SET LOCAL enable_seqscan = off")  # tables are empty: it is what can be done
+        with plans(tx) as steps:
+            query(tx)
+    assert steps
+    return steps
+
+
+def reads_whole_tables(steps: list[str]) -> list[str]:
+    """Give the steps that read every row of a table; reading an index in its order, until enough is found, is none."""
+    begins = [step.strip().removeprefix("->").strip() for step in steps]
+    return [
+        step for step in begins if step.startswith(READS_ALL) and "USING" not in step and step != "SCAN CONSTANT ROW"
+    ]
+
+
+@pytest.mark.parametrize("name", LISTS)
+def test_lists_come_in_the_order_of_an_index(tables: Database, name: str) -> None:
+    steps = look(tables, LISTS[name])
+    page = steps[:-1] if name.startswith("devices") else steps  # the last step sorts the devices of the page
+    assert not [step for step in page if "TEMP B-TREE" in step], steps
+    assert not reads_whole_tables(steps), steps
+
+
+@pytest.mark.parametrize("name", LOOKS)
+def test_nothing_reads_whole_tables(tables: Database, name: str) -> None:
+    steps = look(tables, LOOKS[name])
+    assert not reads_whole_tables(steps), steps
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_open_alerts_of_a_device_are_found_among_open_alerts(tables: Database) -> None:
+    """Not among all its alerts, which are kept for ever."""
+    steps = look(tables, LOOKS["beside an installation"])
+    assert any("ix_alerts_unresolved_device_id" in step for step in steps), steps
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_what_waits_is_looked_for_among_what_waits(tables: Database) -> None:
+    """Not among all receipts of the device, or of that age; on every upload, and every few seconds."""
+    for name in ("sessions that wait", "devices that wait"):
+        steps = look(tables, LOOKS[name])
+        assert any("chunks USING INDEX ix_chunks_waiting" in step for step in steps), steps
