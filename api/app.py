@@ -16,8 +16,10 @@ from anyio import to_thread
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from api import errors, headers, page
+from api import errors, headers, metrics, page
 from api.live import Hub
+from api.observing import Observing
+from api.overload import Gate, Limits
 from api.routes import api, service
 from api.services import housekeeping, startup
 from api.services.context import Context, utc_now
@@ -32,16 +34,19 @@ class State(TypedDict):
     context: Context
     hub: Hub
     ready: threading.Event
+    gate: Gate
+    watch: service.Watch
 
 
 def create_app(settings: Settings | None = None, clock: Callable[[], datetime] = utc_now) -> FastAPI:
     """Make the application; settings come from the environment unless given."""
     chosen = settings or Settings()
+    gate = Gate(chosen)
     app = FastAPI(
         title="Livella",
         version=version("livella"),
         description="Automatic mounting-angle calibration for vehicle black boxes.",
-        lifespan=lambda _: _lifespan(chosen, clock),
+        lifespan=lambda _: _lifespan(chosen, clock, gate),
         docs_url=None,
         redoc_url=None,
         responses=errors.RESPONSES,
@@ -51,7 +56,9 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
     app.include_router(service.router)
     app.include_router(api)
     app.router.default = GZipMiddleware(page.Page(app.router.default, page.STATIC))
+    app.add_middleware(Limits, gate=gate)
     app.add_middleware(headers.SecurityHeaders)
+    app.add_middleware(Observing)
     _describe(app)
     return app
 
@@ -66,7 +73,8 @@ def _describe(app: FastAPI) -> None:
 
 
 @asynccontextmanager
-async def _lifespan(settings: Settings, clock: Callable[[], datetime]) -> AsyncIterator[State]:
+async def _lifespan(settings: Settings, clock: Callable[[], datetime], gate: Gate) -> AsyncIterator[State]:
+    metrics.forget_dead_processes()
     context = Context.make(settings, clock)
     hub = Hub(context.database)
     context = replace(context, wake=hub.wake)
@@ -80,7 +88,7 @@ async def _lifespan(settings: Settings, clock: Callable[[], datetime]) -> AsyncI
         tasks.start_soon(hub.run)
         tasks.start_soon(housekeeping.run, context)
         with _ending_with(hub.close):
-            yield State(context=context, hub=hub, ready=ready)
+            yield State(context=context, hub=hub, ready=ready, gate=gate, watch=service.Watch(context))
         hub.close()
         tasks.cancel_scope.cancel()  # threads at work are waited for
     context.database.close()

@@ -2,11 +2,12 @@
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Header, Query, Response
+from fastapi import APIRouter, Depends, Header, Query, Request, Response
 
 from api import schemas
 from api.dependencies import AnyDevice, Body, CurrentContext, ready
 from api.formats import MEDIA_TYPES
+from api.overload import Gate
 from api.services import ingest
 from storage import chunks
 
@@ -27,7 +28,8 @@ MAX_SEQ = 2**31 - 2
     responses={202: {"model": schemas.Upload, "description": "Ahead of its turn: kept, and applied when it comes"}},
     openapi_extra=BODY,
 )
-def upload_chunk(
+async def upload_chunk(
+    request: Request,
     device_id: AnyDevice,
     body: Body,
     context: CurrentContext,
@@ -47,7 +49,8 @@ def upload_chunk(
     was declared lost (`sequence-passed`) or a newer session began (`session-ended`): do not send it again.
     """
     sent = chunks.Body(body, content_type, content_encoding, course)
-    answer = ingest.receive(context, device_id, ingest.Chunk(session, seq, sent))
+    gate: Gate = request.state.gate
+    answer = await gate.work(ingest.receive, context, device_id, ingest.Chunk(session, seq, sent))
     if answer.chunk.state == chunks.WAITING:
         response.status_code = 202
     return answer

@@ -1,13 +1,14 @@
 """The estimator of one device during one transaction: loaded once, advanced chunk by chunk, saved once."""
 
 import logging
+import time
 from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
 
 import core
-from api import schemas
+from api import metrics, schemas
 from api.formats.log import Reading
 from api.services import alerting, findings, history, presenting, publishing
 from api.services.context import Context
@@ -37,6 +38,7 @@ class Calibration:
         self.device_id = device_id
         self.row = row
         self.now = context.clock()
+        self.filter_seconds = 0.0
         self._state: core.State | None = None
         self._shown: schemas.Installation | None = None
 
@@ -114,14 +116,28 @@ class Calibration:
         t_last = last_time(reading.samples)
         try:
             params, samples = self._corrected(reading.samples)
-            state, outcome = core.advance(params, self.state, samples)
+            state, outcome = self._advance(params, samples)
         except core.SampleError as error:
             raise UnusableError(str(error)) from error
         self._state = state
         began = received_at - timedelta(seconds=t_last)
-        session = session._replace(started_at=min(session.started_at or began, began))
+        started_at = min(session.started_at or began, began)
+        session = session._replace(started_at=started_at)
+        lag = self.now - started_at - timedelta(seconds=t_last)
+        metrics.LAG.observe(max(lag.total_seconds(), 0.0))
         self._record(session, outcome, t_last, received_at)
         return session, outcome
+
+    def _advance(self, params: core.Parameters, samples: core.Samples) -> tuple[core.State, core.Outcome]:
+        """Advance the estimator and measure how long that takes."""
+        state = self.state
+        begun = time.perf_counter()
+        advanced = core.advance(params, state, samples)
+        taken = time.perf_counter() - begun
+        self.filter_seconds += taken
+        metrics.FILTER.observe(taken)
+        metrics.STAGES.labels("estimator").observe(taken)
+        return advanced
 
     def _corrected(self, samples: core.Samples) -> tuple[core.Parameters, core.Samples]:
         """Take the accelerometer's errors off, where they are known; what is left of the bias then is small."""

@@ -1,0 +1,13 @@
+"""What is counted for monitoring and for nothing else."""
+
+import sqlalchemy as sa
+
+from storage.database import ReadSession
+from storage.models import webhook_deliveries
+
+_backlog = sa.select(sa.func.count()).where(webhook_deliveries.c.state == "pending")
+
+
+def webhook_backlog(tx: ReadSession) -> int:
+    """Count the messages to webhooks that are still to be delivered."""
+    return int(tx.value(_backlog))

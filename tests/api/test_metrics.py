@@ -1,0 +1,114 @@
+"""What Prometheus is told."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from prometheus_client.parser import text_string_to_metric_families
+from pydantic import SecretStr
+from starlette.testclient import TestClient
+
+from api.app import create_app
+from api.services.context import Context
+from api.services.monitoring import KEPT, Fleet
+from api.settings import Settings
+from tests.conftest import Clock
+from tests.drives import chunks
+from tests.service import Api
+
+Figures = dict[tuple[str, frozenset[tuple[str, str]]], float]
+
+
+def figures(text: str) -> Figures:
+    families = text_string_to_metric_families(text)
+    return {(s.name, frozenset(s.labels.items())): s.value for family in families for s in family.samples}
+
+
+def value(found: Figures, name: str, **labels: str) -> float:
+    return found.get((name, frozenset(labels.items())), 0.0)
+
+
+def scrape(client: TestClient) -> Figures:
+    answer = client.get("/metrics")
+    assert answer.status_code == 200
+    assert answer.headers["content-type"].startswith("text/plain; version=")
+    return figures(answer.text)
+
+
+def test_uploads_are_counted_and_timed(api: Api, client: TestClient) -> None:
+    device = api.add_device("counted")
+    before = scrape(client)
+    device.send(chunks()[0], 0, expect=200)
+    device.send(chunks()[0], 0, expect=200)
+    device.send(chunks()[2], 2, expect=202)
+    device.send(b"t,ax\n", 1, expect=422)
+    device.send(chunks()[1], 0, expect=409)
+    after = scrape(client)
+
+    def more(name: str, **labels: str) -> float:
+        return value(after, name, **labels) - value(before, name, **labels)
+
+    for state in ("applied", "duplicate", "waiting"):
+        assert more("livella_uploads_total", state=state, format="csv") == 1, state
+    assert more("livella_uploads_refused_total", reason="log-422") == 1
+    assert more("livella_uploads_refused_total", reason="chunk-conflict") == 1
+    assert more("livella_filter_seconds_count") == 1
+    assert more("livella_estimate_lag_seconds_count") == 1
+    assert more("livella_upload_stage_seconds_count", stage="parse") == 4
+    assert more("livella_upload_stage_seconds_count", stage="store") == 3
+    route = "/api/v1/devices/{device_id}/chunks"
+    assert more("livella_http_requests_total", method="POST", route=route, status="200") == 2
+    assert value(after, "livella_uploads_in_work") == 0
+    assert value(after, "livella_body_bytes") == 0
+
+
+def test_the_fleet_is_counted_without_naming_a_device(api: Api, client: TestClient) -> None:
+    api.add_device("secret-name").send(chunks()[0], 0, expect=200)
+    found = scrape(client)
+    assert sum(number for (name, _), number in found.items() if name == "livella_devices") == 1
+    assert value(found, "livella_database_up") == 1
+    assert value(found, "livella_webhook_backlog") == 0
+    assert any(name == "livella_build_info" for name, _ in found)
+    text = client.get("/metrics").text
+    assert "secret-name" not in text
+    client.get("/nothing/at/all")
+    client.request("BREW", "/api/v1/devices/secret-name")
+    text = client.get("/metrics").text
+    assert "nothing" not in text
+    assert "BREW" not in text
+
+
+@pytest.fixture
+def context(settings: Settings, clock: Clock) -> Iterator[Context]:
+    with TestClient(create_app(settings, clock)):
+        made = Context.make(settings, clock)
+        yield made
+        made.database.close()
+
+
+def test_the_fleet_is_counted_now_and_then(context: Context, settings: Settings, clock: Clock) -> None:
+    now = 0.0
+    fleet = Fleet(context, lambda: now)
+    assert b'livella_devices{stage="waiting"} 0.0' in fleet.render()
+    with TestClient(create_app(settings, clock)) as client:
+        Api(client).add_device()
+    now = KEPT - 0.1
+    assert b'livella_devices{stage="waiting"} 0.0' in fleet.render()
+    now = KEPT
+    assert b'livella_devices{stage="waiting"} 1.0' in fleet.render()
+
+
+def test_a_database_that_is_gone_is_told(tmp_path: Path) -> None:
+    gone = Context.make(Settings(database_url=SecretStr(f"sqlite:///{tmp_path}/missing/livella.db")))
+    told = Fleet(gone).render()
+    gone.database.close()
+    assert b"livella_database_up 0.0" in told
+    assert b"livella_devices" not in told
+
+
+def test_a_token_can_be_asked_for(settings: Settings, clock: Clock) -> None:
+    token = "token-of-prometheus"  # noqa: S105 - made up
+    with TestClient(create_app(settings.model_copy(update={"metrics_token": SecretStr(token)}), clock)) as client:
+        assert client.get("/metrics").status_code == 401
+        assert client.get("/metrics", headers={"Authorization": "Bearer wrong"}).status_code == 401
+        assert client.get("/metrics", headers={"Authorization": f"Bearer {token}"}).status_code == 200
