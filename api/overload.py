@@ -53,9 +53,9 @@ class Gate:
             self.uploads -= 1
             metrics.QUEUE.dec()
 
-    def has_room(self, size: int) -> bool:
-        """Tell whether so many bytes more may be held; a body alone always may."""
-        return self.held == 0 or self.held + size <= self.settings.max_inflight_bytes
+    def has_room(self, size: int, own: int = 0) -> bool:
+        """Tell whether so many bytes more may be held by a body that has `own`; a body alone always may."""
+        return self.held == own or self.held + size <= self.settings.max_inflight_bytes
 
     @asynccontextmanager
     async def body(self, stated: int) -> AsyncIterator["Body"]:
@@ -89,7 +89,7 @@ class Body:
             raise HTTPException(413, f"A body may have at most {limit} bytes here.")
         more = self.received - self.held
         if more > 0:
-            if not self.gate.has_room(more):
+            if not self.gate.has_room(more, self.held):
                 refuse("bytes")
             self.hold(more)
 

@@ -36,8 +36,7 @@ class ServerProcess:
 
     def start(self) -> None:
         """Start without waiting."""
-        command = [sys.executable, "-m", "uvicorn", "--factory", "api.app:create_app", "--port", str(self.port)]
-        command += ["--no-access-log", "--workers", str(self.workers)]
+        command = [sys.executable, "-m", "api.cli", "serve", "--port", str(self.port), "--workers", str(self.workers)]
         with self.log.open("ab") as log:
             self.process = subprocess.Popen(
                 command, cwd=ROOT, env=self.environment, stdout=log, stderr=log, start_new_session=True
