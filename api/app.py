@@ -16,7 +16,7 @@ from anyio import to_thread
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from api import errors, headers, metrics, page
+from api import errors, headers, metrics, page, tracing
 from api.live import Hub
 from api.observing import Observing
 from api.overload import Gate, Limits
@@ -60,6 +60,7 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
     app.add_middleware(headers.SecurityHeaders)
     app.add_middleware(Observing)
     _describe(app)
+    tracing.install(app)
     return app
 
 
