@@ -1,6 +1,7 @@
 """The application: what it is made of, and what runs beside the requests."""
 
 import logging
+import os
 import signal
 import sys
 import threading
@@ -26,6 +27,9 @@ from api.services.context import Context, utc_now
 from api.settings import Settings
 
 log = logging.getLogger(__name__)
+
+READY = "the estimator is compiled"
+"""said once by every server process: `/readyz` speaks for the one that answers only"""
 
 
 class State(TypedDict):
@@ -102,6 +106,7 @@ async def _warm_up(context: Context, ready: threading.Event) -> None:
         log.exception("the estimator cannot be compiled; the service stays unready")
         return
     ready.set()
+    log.info("%s (process %d)", READY, os.getpid())
 
 
 @contextmanager

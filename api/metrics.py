@@ -5,6 +5,7 @@ answer for all; it has to be set before this file is imported.
 """
 
 import os
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -35,7 +36,9 @@ PlatformCollector(registry=_own)
 UPLOADS = Counter("livella_uploads", "Chunks answered.", ["state", "format"], registry=_own)
 REFUSED = Counter("livella_uploads_refused", "Chunks refused.", ["reason"], registry=_own)
 REJECTED = Counter("livella_samples_rejected", "Samples and fixes left out.", ["reason"], registry=_own)
-STAGES = Histogram("livella_upload_stage_seconds", "Time of an upload.", ["stage"], buckets=FAST, registry=_own)
+STAGES = Histogram(
+    "livella_upload_stage_seconds", "Time of an upload, without filter.", ["stage"], buckets=FAST, registry=_own
+)
 FILTER = Histogram("livella_filter_seconds", "Time of one call of the estimator.", buckets=FAST, registry=_own)
 LAG = Histogram("livella_estimate_lag_seconds", "From the last sample to its estimate.", buckets=SLOW, registry=_own)
 QUEUE = Gauge("livella_uploads_in_work", "Chunks read, waiting or in work.", multiprocess_mode="livesum", registry=_own)
@@ -46,18 +49,22 @@ DURATION = Histogram("livella_http_request_seconds", "Time of a request.", ["rou
 DATABASE_ERRORS = Counter("livella_database_errors", "Errors of the database.", ["kind"], registry=_own)
 
 
+LAPS = {stage: STAGES.labels(stage) for stage in ("parse", "foresee", "wait", "store")}
+
+
 class Upload:
-    """Measures one upload, lap by lap."""
+    """Measures one upload, lap by lap; the estimator's time is in none of them."""
 
     def __init__(self, content_type: str) -> None:
         self.format = FORMATS.get(content_type.partition(";")[0].strip().lower(), "other")
+        self.filter_seconds = 0.0
         self._since = time.perf_counter()
 
-    def lap(self, stage: str, without: float = 0.0) -> None:
-        """A stage has ended; `without` are seconds in it that count elsewhere."""
+    def lap(self, stage: str) -> None:
+        """A stage has ended."""
         now = time.perf_counter()
-        STAGES.labels(stage).observe(max(now - self._since - without, 0.0))
-        self._since = now
+        LAPS[stage].observe(max(now - self._since - self.filter_seconds, 0.0))
+        self._since, self.filter_seconds = now, 0.0
 
     def answered(self, state: str, rejected: dict[str, int]) -> None:
         """It was answered with success."""
@@ -68,15 +75,36 @@ class Upload:
             REJECTED.labels(reason).inc(number)
 
 
+class _OfThread(threading.local):
+    upload: Upload | None = None
+
+
+_of_thread = _OfThread()
+
+
 @contextmanager
 def upload(content_type: str) -> Iterator[Upload]:
-    """Measure an upload and count it when it is refused."""
+    """Measure the upload that this thread works on, and count it when it is refused."""
+    _of_thread.upload = Upload(content_type)
     try:
-        yield Upload(content_type)
+        yield _of_thread.upload
     except Exception as error:
         status = getattr(error, "status", None)
         REFUSED.labels(getattr(error, "kind", None) or (f"log-{status}" if status else "fault")).inc()
         raise
+    finally:
+        _of_thread.upload = None
+
+
+@contextmanager
+def estimator() -> Iterator[None]:
+    """Measure a call of the estimator; inside an upload that counts here and not in the lap."""
+    begun = time.perf_counter()
+    yield
+    taken = time.perf_counter() - begun
+    FILTER.observe(taken)
+    if _of_thread.upload is not None:
+        _of_thread.upload.filter_seconds += taken
 
 
 @event.listens_for(Engine, "handle_error")

@@ -3,9 +3,9 @@
 import sqlalchemy as sa
 
 from storage.database import ReadSession
-from storage.models import webhook_deliveries
+from storage.models import delivery_pending, webhook_deliveries
 
-_backlog = sa.select(sa.func.count()).where(webhook_deliveries.c.state == "pending")
+_backlog = sa.select(sa.func.count()).select_from(webhook_deliveries).where(delivery_pending)
 
 
 def webhook_backlog(tx: ReadSession) -> int:

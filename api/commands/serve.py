@@ -19,6 +19,8 @@ KEEP_ALIVE = 120
 """s an idle connection is kept: longer than the interval at which devices post"""
 GRACE = 20
 """s a request may still take after the service was told to end"""
+HANGS = 30
+"""s of silence after which one of several processes is replaced: starting on a busy machine may need more than 5 s"""
 
 FIGURES = "PROMETHEUS_MULTIPROC_DIR"
 """environment variable, read when `api.metrics` is imported"""
@@ -47,6 +49,7 @@ def _serve(settings: Settings) -> None:
         workers=settings.workers,
         timeout_keep_alive=KEEP_ALIVE,
         timeout_graceful_shutdown=GRACE,
+        timeout_worker_healthcheck=HANGS,
         server_header=False,
         access_log=False,
         ws="none",
