@@ -2,18 +2,17 @@
 
 import logging
 import re
+import secrets
 import time
-import uuid
 
-from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api import logs, metrics
 from api.schemas import DEVICE_ID
 from api.services.access import KEY_PREFIX
 
-HEADER = "X-Request-ID"
-SOUND = re.compile(r"[A-Za-z0-9._-]{1,64}")
+HEADER = b"x-request-id"
+SOUND = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 BASE = "/api/v1"
 ELSEWHERE = "other"
@@ -44,7 +43,7 @@ class Observing:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                MutableHeaders(scope=message)[HEADER] = request_id
+                message["headers"] = [*message.get("headers", ()), (HEADER, request_id.encode())]
             await send(message)
 
         try:
@@ -55,8 +54,8 @@ class Observing:
 
 
 def _request_id(scope: Scope) -> str:
-    given = Headers(scope=scope).get(HEADER, "")
-    return given if SOUND.fullmatch(given) else uuid.uuid4().hex
+    given = next((value for name, value in scope["headers"] if name == HEADER), b"")
+    return given.decode() if SOUND.fullmatch(given) else secrets.token_hex(16)
 
 
 def _tell(scope: Scope, status: int, seconds: float) -> None:

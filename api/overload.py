@@ -1,15 +1,13 @@
 """What one process takes on at once: bodies in memory, uploads in work. More is refused at once, before it is read."""
 
+import asyncio
 import re
 import secrets
 import sys
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from collections.abc import Callable
 from typing import Any, NoReturn, TypeVar
 
-import anyio
 from anyio import CapacityLimiter, to_thread
-from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -57,16 +55,6 @@ class Gate:
         """Tell whether so many bytes more may be held by a body that has `own`; a body alone always may."""
         return self.held == own or self.held + size <= self.settings.max_inflight_bytes
 
-    @asynccontextmanager
-    async def body(self, stated: int) -> AsyncIterator["Body"]:
-        """Hold the bytes of a body until its request is answered."""
-        body = Body(self)
-        body.hold(stated)
-        try:
-            yield body
-        finally:
-            body.hold(-body.held)
-
 
 class Body:
     """The bytes of one request."""
@@ -78,9 +66,15 @@ class Body:
 
     def hold(self, size: int) -> None:
         """Count so many bytes more."""
+        if size == 0:
+            return
         self.held += size
         self.gate.held += size
         metrics.BODIES.inc(size)
+
+    def release(self) -> None:
+        """The request is answered."""
+        self.hold(-self.held)
 
     def arrived(self, size: int, limit: int) -> None:
         """Count a part; refuse what is too much for the limit or for the memory."""
@@ -107,9 +101,7 @@ class Limits:
             await self.app(scope, receive, send)
             return
         is_upload = UPLOAD.fullmatch(scope["path"]) is not None
-        length = Headers(scope=scope).get("content-length", "")
-        stated = int(length) if length.isdecimal() else 0
-        limit = MAX_OTHER_BYTES
+        stated, limit = _stated(scope), MAX_OTHER_BYTES
         if is_upload:  # the route tells what is too large, to those who may send one
             limit = sys.maxsize
             stated = min(stated, self.gate.settings.max_chunk_bytes)
@@ -118,8 +110,12 @@ class Limits:
         except HTTPException as error:
             await errors.of_http(error)(scope, receive, send)
             return
-        async with self.gate.body(stated) as body:
+        body = Body(self.gate)
+        body.hold(stated)
+        try:
             await self.app(scope, self._counted(receive, body, limit), send)
+        finally:
+            body.release()
 
     def _check(self, scope: Scope, stated: int, limit: int, is_upload: bool) -> None:
         if sum(len(name) + len(value) for name, value in scope["headers"]) > MAX_HEADER_BYTES:
@@ -132,7 +128,7 @@ class Limits:
             refuse("uploads")
 
     def _counted(self, receive: Receive, body: Body, limit: int) -> Receive:
-        deadline = anyio.current_time() + self.gate.settings.body_timeout
+        deadline = asyncio.get_running_loop().time() + self.gate.settings.body_timeout
         complete = False
 
         async def counted() -> Message:
@@ -140,7 +136,7 @@ class Limits:
             if complete:
                 return await receive()
             try:
-                with anyio.fail_after(max(deadline - anyio.current_time(), 0.0)):
+                async with asyncio.timeout_at(deadline):
                     message = await receive()
             except TimeoutError:
                 raise HTTPException(408, "The body took too long to arrive.", {"Connection": "close"}) from None
@@ -149,6 +145,12 @@ class Limits:
             return message
 
         return counted
+
+
+def _stated(scope: Scope) -> int:
+    """Give the bytes a body will have, 0 when that is not said."""
+    length = next((value for name, value in scope["headers"] if name == b"content-length"), b"")
+    return int(length) if length.isdigit() else 0
 
 
 def refuse(limit: str) -> NoReturn:

@@ -4,7 +4,7 @@ import socket
 import threading
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -22,6 +22,7 @@ from tests.server import ServerProcess, running
 from tests.service import Api, Device
 
 PARALLEL = 200
+DRIBBLERS = 60
 SLOWEST_HEALTH = 1.0
 """s"""
 MEMORY = 400 * 1024 * 1024
@@ -99,17 +100,24 @@ def stored(database: Database, session: str) -> set[str]:
         return {row[0] for row in tx.connection.execute(query)}
 
 
+def wait_until(happened: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + 30
+    while not happened():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
 @pytest.mark.parametrize("workers", [1, 2])
 def test_what_was_accepted_before_the_stop_is_stored(
     workers: int, database_url: str, database: Database, tmp_path: Path
 ) -> None:
-    server = ServerProcess(database_url, tmp_path, workers)
+    server, bodies = ServerProcess(database_url, tmp_path, workers), chunks() * 50
     with running(server) as api:
         made = [api.add_device(f"box-{n}") for n in range(12)]
         answered: list[tuple[str, int]] = []
 
         def drive(device: Device) -> None:
-            for seq, body in enumerate(chunks() * 50):
+            for seq, body in enumerate(bodies):
                 try:
                     answer = post(server, device, body, session=f"{device.id}-{seq}")
                 except httpx.TransportError:
@@ -119,7 +127,7 @@ def test_what_was_accepted_before_the_stop_is_stored(
         senders = [threading.Thread(target=drive, args=(device,)) for device in made]
         for sender in senders:
             sender.start()
-        time.sleep(1.5)
+        wait_until(lambda: len(answered) >= 2 * len(made))
         assert server.stop() < 15
         for sender in senders:
             sender.join(60)
@@ -177,19 +185,55 @@ def test_headers_have_an_end(server: Running) -> None:
     assert api.client.get("/healthz").status_code == 200
 
 
+def head_of(device: Device, length: str) -> bytes:
+    return (
+        f"POST /api/v1/devices/{device.id}/chunks?session=slow&seq=0 HTTP/1.1\r\nHost: x\r\n"
+        f"Authorization: Bearer {device.key}\r\nContent-Type: text/csv\r\n{length}\r\n\r\n"
+    ).encode()
+
+
 def test_a_slow_body_is_given_up(server: Running) -> None:
     process, _, device = server
     begun = time.monotonic()
     with connection(process) as opened:
-        head = (
-            f"POST /api/v1/devices/{device.id}/chunks?session=slow&seq=0 HTTP/1.1\r\nHost: x\r\n"
-            f"Authorization: Bearer {device.key}\r\nContent-Type: text/csv\r\nContent-Length: 1000\r\n\r\nt,"
-        )
-        opened.sendall(head.encode())
+        opened.sendall(head_of(device, "Content-Length: 1000") + b"t,")
         answer = answer_of(opened)
     assert answer.startswith(b"HTTP/1.1 408 ")
     assert b"application/problem+json" in answer
     assert 0.8 < time.monotonic() - begun < 10
+
+
+def dribble(process: ServerProcess, device: Device) -> tuple[bytes, float]:
+    """Send a body that never ends, a byte now and then; give the answer and the seconds it took."""
+    begun = time.monotonic()
+    with connection(process) as opened:
+        opened.sendall(head_of(device, "Transfer-Encoding: chunked"))
+        opened.settimeout(0.1)
+        while time.monotonic() - begun < 20:
+            try:
+                return opened.recv(65536), time.monotonic() - begun
+            except TimeoutError:
+                opened.sendall(b"1\r\n \r\n")
+    return b"", time.monotonic() - begun
+
+
+def test_many_who_dribble_are_given_up_and_hold_nobody_up(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path}/livella.db"
+    process = ServerProcess(url, tmp_path, body_timeout="2", max_uploads="1", upload_threads="1")
+    with running(process) as api, ThreadPoolExecutor(DRIBBLERS) as pool:
+        device = api.add_device()
+        dribbling = [pool.submit(dribble, process, device) for _ in range(DRIBBLERS)]
+        time.sleep(1.0)
+        begun = time.monotonic()
+        assert post(process, device, chunks()[0]).status_code == 200, "they take up neither the thread nor the queue"
+        assert api.client.get("/healthz").status_code == 200
+        assert time.monotonic() - begun < 5
+        for answer, seconds in (waited.result() for waited in dribbling):
+            assert answer.startswith(b"HTTP/1.1 408 ")
+            assert 1.8 < seconds < 10
+        told = figures(api.client.get("/metrics").text)
+        assert value(told, "livella_body_bytes") == 0
+        assert value(told, "livella_uploads_in_work") == 0
 
 
 def test_bodies_in_memory_are_bounded(server: Running) -> None:
