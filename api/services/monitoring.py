@@ -12,9 +12,10 @@ from prometheus_client.core import GaugeMetricFamily
 from prometheus_client.metrics_core import Metric
 from sqlalchemy.exc import SQLAlchemyError
 
+from api.services import webhooks
 from api.services.context import Context
 from core import Stage
-from storage import alerts, devices, monitoring
+from storage import alerts, devices
 
 log = logging.getLogger(__name__)
 
@@ -75,7 +76,7 @@ def _build() -> Metric:
 
 def _counted(context: Context) -> list[Metric]:
     with context.database.read() as tx:
-        by_stage, open_alerts, backlog = devices.stages(tx), alerts.counts(tx), monitoring.webhook_backlog(tx)
+        by_stage, open_alerts, backlog = devices.stages(tx), alerts.counts(tx), webhooks.backlog(tx)
     staged = GaugeMetricFamily("livella_devices", "Devices by stage.", labels=["stage"])
     for stage in Stage:
         staged.add_metric([stage.word], by_stage.get(stage.word, 0))

@@ -1,5 +1,6 @@
 """What Prometheus is told."""
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -8,10 +9,14 @@ from prometheus_client.parser import text_string_to_metric_families
 from pydantic import SecretStr
 from starlette.testclient import TestClient
 
+from api import metrics, schemas
 from api.app import create_app
+from api.services import fleet, publishing, webhooks
 from api.services.context import Context
 from api.services.monitoring import KEPT, Fleet
 from api.settings import Settings
+from storage import alerts, devices
+from storage.migrate import upgrade
 from tests.conftest import Clock
 from tests.drives import chunks
 from tests.service import Api
@@ -78,12 +83,46 @@ def test_the_fleet_is_counted_without_naming_a_device(api: Api, client: TestClie
     assert "BREW" not in text
 
 
+def test_nothing_is_timed_twice(api: Api, client: TestClient) -> None:
+    device = api.add_device("timed")
+    before = scrape(client)
+    begun = time.perf_counter()
+    for seq, body in enumerate(chunks()[:4]):
+        device.send(body, seq, expect=200)
+    seconds = time.perf_counter() - begun
+    after = scrape(client)
+    timed = ["livella_filter_seconds_sum", "livella_upload_stage_seconds_sum"]
+    parts = {key: after[key] - before.get(key, 0.0) for key in after if key[0] in timed}
+    assert all(part > 0 for part in parts.values())
+    assert len(parts) == 5
+    assert sum(parts.values()) < seconds
+
+
+def test_the_filter_is_taken_out_of_the_lap_that_holds_it() -> None:
+    def stage(name: str) -> float:
+        return value(figures(metrics.render().decode()), "livella_upload_stage_seconds_sum", stage=name)
+
+    before = stage("foresee"), stage("store")
+    with metrics.upload("text/csv") as watch:
+        watch.lap("parse")
+        with metrics.estimator():
+            time.sleep(0.2)
+        watch.lap("foresee")
+        time.sleep(0.1)
+        with metrics.estimator():
+            time.sleep(0.2)
+        watch.lap("store")
+    assert stage("foresee") - before[0] < 0.1
+    assert 0.1 <= stage("store") - before[1] < 0.2
+
+
 @pytest.fixture
-def context(settings: Settings, clock: Clock) -> Iterator[Context]:
-    with TestClient(create_app(settings, clock)):
-        made = Context.make(settings, clock)
-        yield made
-        made.database.close()
+def context(database_url: str, tmp_path: Path, clock: Clock) -> Iterator[Context]:
+    settings = Settings(database_url=SecretStr(database_url), data_dir=tmp_path, webhook_allow_private=True)
+    made = Context.make(settings, clock)
+    upgrade(made.database)
+    yield made
+    made.database.close()
 
 
 def test_the_fleet_is_counted_now_and_then(context: Context, settings: Settings, clock: Clock) -> None:
@@ -96,6 +135,19 @@ def test_the_fleet_is_counted_now_and_then(context: Context, settings: Settings,
     assert b'livella_devices{stage="waiting"} 0.0' in fleet.render()
     now = KEPT
     assert b'livella_devices{stage="waiting"} 1.0' in fleet.render()
+
+
+def test_messages_to_webhooks_are_counted_until_they_are_delivered(context: Context) -> None:
+    fleet.register(context, schemas.DeviceDraft(id="box", name="box"))
+    webhook = webhooks.add(context, schemas.WebhookDraft(name="a", url="http://127.0.0.1:9/"), "tests")
+    assert b"livella_webhook_backlog 0.0" in Fleet(context).render()
+    with context.database.write() as tx:
+        finding = alerts.Finding("device_loose", "critical", "The device is loose.", {})
+        raised = alerts.raise_(tx, devices.exists(tx, "box") or 0, finding, context.clock())
+        publishing.alert_changed(tx, raised, context.clock())
+    assert b"livella_webhook_backlog 1.0" in Fleet(context).render()
+    webhooks.remove(context, webhook.webhook.id)
+    assert b"livella_webhook_backlog 0.0" in Fleet(context).render()
 
 
 def test_a_database_that_is_gone_is_told(tmp_path: Path) -> None:
