@@ -1,6 +1,7 @@
 """The application: what it is made of, and what runs beside the requests."""
 
 import logging
+import os
 import signal
 import sys
 import threading
@@ -16,14 +17,19 @@ from anyio import to_thread
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from api import errors, headers, page
+from api import errors, headers, metrics, page, tracing
 from api.live import Hub
+from api.observing import Observing
+from api.overload import Gate, Limits
 from api.routes import api, service
 from api.services import housekeeping, startup
 from api.services.context import Context, utc_now
 from api.settings import Settings
 
 log = logging.getLogger(__name__)
+
+READY = "the estimator is compiled"
+"""said once by every server process: `/readyz` speaks for the one that answers only"""
 
 
 class State(TypedDict):
@@ -32,16 +38,19 @@ class State(TypedDict):
     context: Context
     hub: Hub
     ready: threading.Event
+    gate: Gate
+    watch: service.Watch
 
 
 def create_app(settings: Settings | None = None, clock: Callable[[], datetime] = utc_now) -> FastAPI:
     """Make the application; settings come from the environment unless given."""
     chosen = settings or Settings()
+    gate = Gate(chosen)
     app = FastAPI(
         title="Livella",
         version=version("livella"),
         description="Automatic mounting-angle calibration for vehicle black boxes.",
-        lifespan=lambda _: _lifespan(chosen, clock),
+        lifespan=lambda _: _lifespan(chosen, clock, gate),
         docs_url=None,
         redoc_url=None,
         responses=errors.RESPONSES,
@@ -51,8 +60,11 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
     app.include_router(service.router)
     app.include_router(api)
     app.router.default = GZipMiddleware(page.Page(app.router.default, page.STATIC))
+    app.add_middleware(Limits, gate=gate)
     app.add_middleware(headers.SecurityHeaders)
+    app.add_middleware(Observing)
     _describe(app)
+    tracing.install(app)
     return app
 
 
@@ -66,7 +78,8 @@ def _describe(app: FastAPI) -> None:
 
 
 @asynccontextmanager
-async def _lifespan(settings: Settings, clock: Callable[[], datetime]) -> AsyncIterator[State]:
+async def _lifespan(settings: Settings, clock: Callable[[], datetime], gate: Gate) -> AsyncIterator[State]:
+    metrics.forget_dead_processes()
     context = Context.make(settings, clock)
     hub = Hub(context.database)
     context = replace(context, wake=hub.wake)
@@ -80,7 +93,7 @@ async def _lifespan(settings: Settings, clock: Callable[[], datetime]) -> AsyncI
         tasks.start_soon(hub.run)
         tasks.start_soon(housekeeping.run, context)
         with _ending_with(hub.close):
-            yield State(context=context, hub=hub, ready=ready)
+            yield State(context=context, hub=hub, ready=ready, gate=gate, watch=service.Watch(context))
         hub.close()
         tasks.cancel_scope.cancel()  # threads at work are waited for
     context.database.close()
@@ -93,6 +106,7 @@ async def _warm_up(context: Context, ready: threading.Event) -> None:
         log.exception("the estimator cannot be compiled; the service stays unready")
         return
     ready.set()
+    log.info("%s (process %d)", READY, os.getpid())
 
 
 @contextmanager

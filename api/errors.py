@@ -13,7 +13,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
-from api import schemas
+from api import metrics, schemas
 from api.formats import FormatError
 from api.services import errors
 
@@ -78,6 +78,11 @@ def _format_error(_: Request, error: FormatError) -> JSONResponse:
 
 
 def _http_error(_: Request, error: HTTPException) -> JSONResponse:
+    return of_http(error)
+
+
+def of_http(error: HTTPException) -> JSONResponse:
+    """Make the answer to an error that carries its status."""
     title = HTTPStatus(error.status_code).phrase
     return problem(error.status_code, title, str(error.detail), headers=error.headers)
 
@@ -99,7 +104,9 @@ def _item(found: dict[str, Any]) -> schemas.ProblemItem:
 def _database_error(request: Request, error: DBAPIError | PoolTimeoutError) -> JSONResponse:
     """Locked and unreachable mean: try again. Anything else is a fault of ours."""
     gone = isinstance(error, OperationalError | PoolTimeoutError) or error.connection_invalidated
-    log.error("%s %s: %s", request.method, request.url.path, type(error).__name__, exc_info=None if gone else error)
+    if isinstance(error, PoolTimeoutError):
+        metrics.DATABASE_ERRORS.labels("TimeoutError").inc()
+    log.error("the database failed: %s", type(error).__name__, exc_info=None if gone else error)
     if gone:
         return problem(503, "The database is busy or cannot be reached", "Try again in a moment.", "unavailable")
     return _unexpected(request, error)

@@ -36,6 +36,19 @@ class Settings(BaseSettings):
     )
     max_chunk_bytes: int = Field(16 * MIB, ge=1024, description="Largest chunk as sent, bytes.")
     max_decoded_bytes: int = Field(64 * MIB, ge=1024, description="Largest chunk after decompression, bytes.")
+    max_uploads: int = Field(
+        256,
+        ge=1,
+        le=100_000,
+        description="Chunks a server process has in work or waiting at once; more are answered with 503.",
+    )
+    upload_threads: int = Field(8, ge=1, le=64, description="Chunks a server process works on at the same time.")
+    max_inflight_bytes: int = Field(
+        256 * MIB,
+        ge=1024,
+        description="Request bodies as sent that a server process holds at once, bytes; more are answered with 503.",
+    )
+    body_timeout: float = Field(120.0, gt=0, description="Seconds a request's body may take to arrive.")
     gap_timeout: float = Field(
         600.0, gt=0, description="Seconds a chunk waits for a missing one before it before the gap is declared."
     )
@@ -56,6 +69,16 @@ class Settings(BaseSettings):
     audit_days: float = Field(730.0, gt=0, description="Days the audit trail is kept.")
     stream_minutes: float = Field(
         15.0, gt=0, description="Minutes a live stream that was cut off can be resumed without a gap."
+    )
+    metrics_token: SecretStr | None = Field(
+        None,
+        min_length=16,
+        description="What Prometheus has to send as `Authorization: Bearer TOKEN` to read `/metrics`; "
+        "unset: anybody who reaches the port may.",
+    )
+    log_format: Literal["text", "json"] = Field("text", description="Log lines for people or for machines.")
+    log_level: Literal["debug", "info", "warning", "error"] = Field(
+        "info", description="Messages from this level on are logged."
     )
     webhook_allow_private: bool = Field(
         False,

@@ -95,7 +95,8 @@ class Database:
 
 def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:
     def engine(begin: str, pragmas: tuple[str, ...], **pool: Any) -> Engine:
-        made = sa.create_engine(url, connect_args={"timeout": BUSY_TIMEOUT, "check_same_thread": False}, **pool)
+        options = {"timeout": BUSY_TIMEOUT, "check_same_thread": False}
+        made = sa.create_engine(url, connect_args=options, hide_parameters=True, **pool)
 
         @event.listens_for(made, "connect")
         def _connect(connection: Any, _record: Any) -> None:
@@ -120,6 +121,7 @@ def _postgresql_engines(url: sa.URL) -> tuple[Engine, Engine]:
         url,
         connect_args={"connect_timeout": 5, "options": waits, "application_name": "livella"},
         pool_pre_ping=True,
+        hide_parameters=True,  # errors are logged, and must not hold what was sent
         pool_size=10,
         max_overflow=40,
         pool_timeout=BUSY_TIMEOUT,

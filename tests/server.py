@@ -12,6 +12,7 @@ from pathlib import Path
 
 import httpx
 
+from api.app import READY
 from tests.service import ADMIN_KEY, COMPILE_SECONDS, Api
 
 ROOT = Path(__file__).parent.parent
@@ -33,30 +34,35 @@ class ServerProcess:
             **{f"LIVELLA_{name.upper()}": value for name, value in settings.items()},
         }
         self.process: subprocess.Popen[bytes] | None = None
+        self._begun = 0
 
     def start(self) -> None:
         """Start without waiting."""
-        command = [sys.executable, "-m", "uvicorn", "--factory", "api.app:create_app", "--port", str(self.port)]
-        command += ["--no-access-log", "--workers", str(self.workers)]
+        command = [sys.executable, "-m", "api.cli", "serve", "--port", str(self.port), "--workers", str(self.workers)]
         with self.log.open("ab") as log:
+            self._begun = log.tell()
             self.process = subprocess.Popen(
                 command, cwd=ROOT, env=self.environment, stdout=log, stderr=log, start_new_session=True
             )
 
     def wait_until_ready(self) -> None:
-        """Wait; of several processes, any may answer: until they have answered well many times in a row."""
+        """Wait until every process has compiled the estimator; `/readyz` speaks only for the one that answers."""
         deadline = time.monotonic() + COMPILE_SECONDS
-        wanted = 1 if self.workers == 1 else 10 * self.workers
-        well = 0
-        while well < wanted:
+        while not (self._ready_processes() >= self.workers and self._is_ready()):
             assert self.process is not None
             assert self.process.poll() is None, self.log.read_text()
             assert time.monotonic() < deadline, self.log.read_text()
-            try:
-                well = well + 1 if httpx.get(f"{self.url}/readyz", timeout=1.0).status_code == 200 else 0
-            except httpx.TransportError:
-                well = 0
             time.sleep(0.02)
+
+    def _ready_processes(self) -> int:
+        """Count the processes that were ready since the last start; one that was replaced counts twice."""
+        return self.log.read_bytes()[self._begun :].count(READY.encode())
+
+    def _is_ready(self) -> bool:
+        try:
+            return httpx.get(f"{self.url}/readyz", timeout=1.0).status_code == 200
+        except httpx.TransportError:
+            return False
 
     def kill(self) -> None:
         """End it with no chance to tidy up."""

@@ -26,7 +26,8 @@ LONGEST_WAIT = 60.0
 """s between two tries, also when the service asks for more"""
 
 _BACKOFF = wait_random_exponential(multiplier=0.5, max=30.0)
-_TOO_MANY = 429
+_TRY_AGAIN = frozenset({httpx.codes.REQUEST_TIMEOUT, httpx.codes.TOO_MANY_REQUESTS})
+"""The network was too slow for the body, or too much was sent; 5xx too are worth another try."""
 
 
 class RefusedError(Exception):
@@ -103,7 +104,7 @@ class Service:
         if response.is_success:
             return response.json() if response.content else None
         text = _explanation(response)
-        if response.status_code == _TOO_MANY or response.is_server_error:
+        if response.status_code in _TRY_AGAIN or response.is_server_error:
             raise UnavailableError(text, _retry_after(response))
         raise RefusedError(response.status_code, text)
 

@@ -1,19 +1,30 @@
 """`livella serve`: the service and the page."""
 
-import copy
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import typer
 import uvicorn
-from uvicorn.config import LOGGING_CONFIG
 
+from api import logs
 from api.commands.surroundings import configure, opened
 from api.services import startup
+from api.settings import Settings
 
 KEEP_ALIVE = 120
 """s an idle connection is kept: longer than the interval at which devices post"""
 GRACE = 20
 """s a request may still take after the service was told to end"""
+HANGS = 30
+"""s of silence after which one of several processes is replaced: starting on a busy machine may need more than 5 s"""
+
+FIGURES = "PROMETHEUS_MULTIPROC_DIR"
+"""environment variable, read when `api.metrics` is imported"""
+HTTP: Any = "auto" if sys.platform == "win32" else "api.protocol:BoundedProtocol"
 
 
 def run(flags: dict[str, Any]) -> None:
@@ -25,6 +36,11 @@ def run(flags: dict[str, Any]) -> None:
     if first_key:
         typer.echo(f"First admin key, shown only once: {first_key}")
     typer.echo(f"Livella is at http://{host}:{settings.port}")
+    with _shared_figures(settings.workers):
+        _serve(settings)
+
+
+def _serve(settings: Settings) -> None:
     uvicorn.run(
         "api.app:create_app",
         factory=True,
@@ -33,17 +49,21 @@ def run(flags: dict[str, Any]) -> None:
         workers=settings.workers,
         timeout_keep_alive=KEEP_ALIVE,
         timeout_graceful_shutdown=GRACE,
+        timeout_worker_healthcheck=HANGS,
         server_header=False,
         access_log=False,
         ws="none",
-        log_config=_logging(),
+        http=HTTP,
+        log_config=logs.config(settings),
     )
 
 
-def _logging() -> dict[str, Any]:
-    """Give uvicorn's logging, with the service's own messages written the same way."""
-    config = copy.deepcopy(LOGGING_CONFIG)
-    config["loggers"] |= {
-        name: {"handlers": ["default"], "level": "INFO", "propagate": False} for name in ("api", "storage")
-    }
-    return config
+@contextmanager
+def _shared_figures(workers: int) -> Iterator[None]:
+    """Give several processes a directory through which each of them tells the figures of all."""
+    if workers == 1:
+        yield
+        return
+    with tempfile.TemporaryDirectory(prefix="livella-metrics-") as directory:
+        os.environ[FIGURES] = directory
+        yield

@@ -2,12 +2,14 @@
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Header, Query, Response
+from fastapi import APIRouter, Depends, Header, Query, Request, Response
 
 from api import schemas
 from api.dependencies import AnyDevice, Body, CurrentContext, ready
 from api.formats import MEDIA_TYPES
+from api.overload import Gate
 from api.services import ingest
+from api.services.context import Context
 from storage import chunks
 
 router = APIRouter(prefix="/devices/{device_id}/chunks", tags=["chunks"])
@@ -28,7 +30,8 @@ MAX_SEQ = 2**31 - 2
     responses={202: {"model": schemas.Upload, "description": "Ahead of its turn: kept, and applied when it comes"}},
     openapi_extra=BODY,
 )
-def upload_chunk(
+async def upload_chunk(
+    request: Request,
     device_id: AnyDevice,
     body: Body,
     context: CurrentContext,
@@ -47,6 +50,11 @@ def upload_chunk(
     was declared lost (`sequence-passed`) or a newer session began (`session-ended`): do not send it again.
     """
     sent = chunks.Body(body, content_type, content_encoding, course)
-    answer = ingest.receive(context, device_id, ingest.Chunk(session, seq, sent))
+    gate: Gate = request.state.gate
+    return await gate.work(_answer, context, device_id, ingest.Chunk(session, seq, sent))
+
+
+def _answer(context: Context, device_id: str, chunk: ingest.Chunk) -> Response:
+    answer = ingest.receive(context, device_id, chunk)
     status = 202 if answer.chunk.state == chunks.WAITING else 200
     return Response(answer.model_dump_json(), status, media_type="application/json")

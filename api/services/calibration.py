@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 import numpy as np
 
 import core
-from api import schemas
+from api import metrics, schemas
 from api.formats.log import Reading
 from api.services import alerting, findings, history, presenting, publishing
 from api.services.context import Context
@@ -119,7 +119,10 @@ class Calibration:
             raise UnusableError(str(error)) from error
         self._state = state
         began = received_at - timedelta(seconds=t_last)
-        session = session._replace(started_at=min(session.started_at or began, began))
+        started_at = min(session.started_at or began, began)
+        session = session._replace(started_at=started_at)
+        lag = self.now - started_at - timedelta(seconds=t_last)
+        metrics.LAG.observe(max(lag.total_seconds(), 0.0))
         self._record(session, outcome, t_last, received_at)
         return session, outcome
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import core
+from api import metrics
 from api.formats import ParsedLog
 from api.formats.log import Reading
 from api.services.context import Context
@@ -64,8 +65,9 @@ def advance(
     params: core.Parameters, correction: Correction, state: core.State, samples: core.Samples
 ) -> tuple[core.State, core.Outcome]:
     """Advance by samples, less the accelerometer's errors where they are known; what is left of its bias is small."""
-    if correction is None:
+    if correction is not None:
+        calibration = core.AccelerometerCalibration(np.array(correction["gain"]), np.array(correction["offset"]))
+        samples = replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))
+        params = core.calibrated(params)
+    with metrics.estimator():
         return core.advance(params, state, samples)
-    calibration = core.AccelerometerCalibration(np.array(correction["gain"]), np.array(correction["offset"]))
-    corrected = replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))
-    return core.advance(core.calibrated(params), state, corrected)

@@ -10,7 +10,7 @@ import logging
 from datetime import timedelta
 from typing import NamedTuple
 
-from api import schemas
+from api import metrics, schemas
 from api.formats import FormatError, Limits, ParsedLog, Reading, parse
 from api.services.calibration import Calibration, last_time
 from api.services.context import Context
@@ -49,10 +49,21 @@ def receive(context: Context, device_id: str, chunk: Chunk) -> schemas.Upload:
     NotFoundError
         no such device.
     """
+    with metrics.upload(chunk.body.content_type) as watch:
+        answer = _receive(context, device_id, chunk, watch)
+        watch.answered("duplicate" if answer.chunk.duplicate else answer.chunk.state, answer.chunk.rejected)
+    context.wake()
+    return answer
+
+
+def _receive(context: Context, device_id: str, chunk: Chunk, watch: metrics.Upload) -> schemas.Upload:
     parsed = read(context, chunk.body)
+    watch.lap("parse")
     foresight = foresee(context, device_id, chunk.session, chunk.seq, parsed)
+    watch.lap("foresee")
     with context.database.write() as tx:
         calibration = Calibration.open(tx, context, device_id)
+        watch.lap("wait")
         calibration.foresight = foresight
         session = sessions.find_or_add(tx, calibration.row.device_pk, chunk.session, calibration.now)
         known = chunks.find(tx, session.pk, chunk.seq)
@@ -64,7 +75,7 @@ def receive(context: Context, device_id: str, chunk: Chunk) -> schemas.Upload:
         answer = schemas.Upload(
             chunk=_present(chunk.session, receipt, known is not None, parsed), installation=calibration.shown()
         )
-    context.wake()
+    watch.lap("store")
     return answer
 
 

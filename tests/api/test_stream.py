@@ -19,7 +19,7 @@ from storage.events import Position
 from tests.conftest import Clock
 from tests.drives import chunks, remounted
 from tests.server import ServerProcess, running
-from tests.service import COMPILE_SECONDS, Api, Device
+from tests.service import Api, Device
 
 
 class Told(NamedTuple):
@@ -172,19 +172,11 @@ def test_several_workers_share_one_port_and_end_together(database_url: str, tmp_
         device = api.add_device()
         for seq, body in enumerate(chunks()[:4]):
             with httpx.Client(base_url=server.url, timeout=30.0) as client:  # a connection each: any worker
-                send_when_ready(Device(Api(client), device.id, device.key), body, seq)
+                Device(Api(client), device.id, device.key).send(body, seq, expect=200)
         for listener in listeners:
             assert [told.type for told in listener.wait_for(5)] == ["device", *["installation"] * 4]
         assert server.stop(30) < 15
         assert all(listener.ended.wait(5) for listener in listeners)
-
-
-def send_when_ready(device: Device, body: bytes, seq: int) -> None:
-    """The other worker may still be compiling."""
-    deadline = time.monotonic() + COMPILE_SECONDS
-    while device.send(body, seq).status_code != 200:
-        assert time.monotonic() < deadline
-        time.sleep(0.1)
 
 
 def test_a_stream_that_cannot_be_resumed_says_so(database_url: str, tmp_path: Path, database: Database) -> None:

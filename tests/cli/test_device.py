@@ -76,7 +76,9 @@ def send(server: Server, patience: float = 20.0) -> tuple[object, list[str]]:
     return answer, said
 
 
-@pytest.mark.parametrize("trouble", [HANG_UP, Answer(429), Answer(500), Answer(502, b"<html>"), Answer(503, PROBLEM)])
+@pytest.mark.parametrize(
+    "trouble", [HANG_UP, Answer(408), Answer(429), Answer(500), Answer(502, b"<html>"), Answer(503, PROBLEM)]
+)
 def test_tries_again_until_it_works(trouble: Answer) -> None:
     with answering(trouble, trouble, Answer(200, b'{"ok": 1}')) as server:
         answer, said = send(server)
