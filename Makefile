@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel bench-load clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -70,6 +70,9 @@ bench-accuracy: setup  ## accuracy, honesty and alarms on thousands of drives: w
 
 bench-kernel: setup  ## speed beside numpy and filterpy: writes docs/performance.md
 	$(BIN)/python benchmarks/kernel.py
+
+bench-load: setup  ## devices the service holds: writes docs/performance.md
+	$(BIN)/python benchmarks/load.py
 
 clean:
 	rm -rf .venv web/node_modules api/static build

@@ -3,7 +3,6 @@
 import glob
 import os
 import shutil
-import socket
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -16,6 +15,7 @@ import pytest
 
 from storage.database import Database
 from storage.migrate import upgrade
+from tests.ports import free_port
 
 _numbers = count(1)
 
@@ -28,8 +28,9 @@ def find_program(name: str) -> str | None:
 class Server:
     """A running server on 127.0.0.1."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, pid: int) -> None:
         self.port = port
+        self.pid = pid
         self._template: str | None = None
 
     def url(self, name: str) -> str:
@@ -71,13 +72,13 @@ def running_server() -> Iterator[Server]:
     directory = Path(tempfile.mkdtemp(prefix="livella-postgres-"))
     if user is not None:
         shutil.chown(directory, user)
-    data, port = str(directory / "data"), _free_port()
+    data, port = str(directory / "data"), free_port()
     options = f"-p {port} -c listen_addresses=127.0.0.1 -c unix_socket_directories='' -c max_connections=200"
     try:
         _run(user, initdb, "-D", data, "-U", "livella", "-A", "trust", "-E", "UTF8", "--no-sync")
         _run(user, pg_ctl, "-D", data, "-w", "-l", str(directory / "log"), "-o", options, "start")
         try:
-            yield Server(port)
+            yield Server(port, int((Path(data) / "postmaster.pid").read_text().split()[0]))
         finally:
             _run(user, pg_ctl, "-D", data, "-w", "-m", "immediate", "stop")
     finally:
@@ -86,9 +87,3 @@ def running_server() -> Iterator[Server]:
 
 def _run(user: str | None, *command: str) -> None:
     subprocess.run(command, check=True, user=user, cwd="/", stdout=subprocess.DEVNULL, stderr=subprocess.STDOUT)
-
-
-def _free_port() -> int:
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return int(listener.getsockname()[1])
