@@ -7,9 +7,9 @@ from datetime import timedelta
 import anyio
 from anyio import to_thread
 
-from api.services import ingest
+from api.services import ingest, webhooks_dispatch
 from api.services.context import Context
-from storage import chunks, estimates, events
+from storage import chunks, deliveries, estimates, events
 
 log = logging.getLogger(__name__)
 
@@ -27,6 +27,7 @@ def tidy(context: Context) -> None:
         events.forget(tx, now - timedelta(minutes=settings.stream_minutes))
         estimates.forget(tx, oldest)
         chunks.forget(tx, oldest)
+        deliveries.forget(tx, oldest)
 
 
 async def run(context: Context) -> None:
@@ -34,6 +35,7 @@ async def run(context: Context) -> None:
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(_every, GAP_INTERVAL, ingest.close_gaps, context)
         tasks.start_soon(_every, TIDY_INTERVAL, tidy, context)
+        tasks.start_soon(webhooks_dispatch.run, context)
 
 
 async def _every(seconds: float, work: Callable[[Context], None], context: Context) -> None:
