@@ -19,8 +19,13 @@ SOURCES = 40
 """addresses of 127/8 that connections come from: one address has ports for 28,000"""
 CONNECTING = 100
 """connections that are opened at once"""
+RETRY_AFTER = re.compile(rb"\r\nretry-after: *(\d+)", re.IGNORECASE)
 RECONNECT = 1.0
 """s until a device whose connection broke tries again"""
+PROBED = 400
+"""connections, at most, over which it is asked whether the process at the other end is ready"""
+PATIENCE = 0.2
+"""s until it is asked again when the answer does not say how long to wait"""
 
 
 class Body(NamedTuple):
@@ -59,6 +64,7 @@ class Connection(asyncio.Protocol):
         self.transport: asyncio.Transport | None = None
         self.queue: deque[tuple[Device, float]] = deque()
         self.busy = False
+        self.asked: asyncio.Future[float] | None = None
         self.received = bytearray()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -71,6 +77,7 @@ class Connection(asyncio.Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """Count what was under way as broken and connect again."""
         self.transport = None
+        self._told(RECONNECT)
         if self.busy:
             self._answered(0)
         if not self.run.closing:
@@ -87,6 +94,21 @@ class Connection(asyncio.Protocol):
         self.busy = True
         self.transport.writelines(self.queue[0][0].request(self.run.host))
 
+    async def until_ready(self) -> None:
+        """Ask the process at the other end, before anything is due, until it is ready."""
+        pause = PATIENCE
+        while pause:
+            if self.transport is not None:
+                self.asked = self.run.loop.create_future()
+                self.transport.write(f"GET /readyz HTTP/1.1\r\nHost: {self.run.host}\r\n\r\n".encode())
+                pause = await self.asked
+            await asyncio.sleep(pause)
+
+    def _told(self, pause: float) -> None:
+        if self.asked is not None and not self.asked.done():
+            self.asked.set_result(pause)
+        self.asked = None
+
     def data_received(self, data: bytes) -> None:
         """Wait for the end of the answer."""
         self.received += data
@@ -97,11 +119,15 @@ class Connection(asyncio.Protocol):
         if length is None or len(self.received) < end + 4 + int(length[1]):
             return
         status, closing = int(self.received[STATUS]), CLOSING.search(self.received, 0, end)
+        wait = RETRY_AFTER.search(self.received, 0, end)
         self.received.clear()
         if closing and self.transport is not None:
             self.transport.close()
             self.transport = None
-        self._answered(status)
+        if self.asked is None:
+            self._answered(status)
+        else:
+            self._told(0.0 if status == OK else float(wait[1]) if wait else PATIENCE)
 
     def _answered(self, status: int) -> None:
         device, due = self.queue.popleft()
@@ -134,6 +160,11 @@ class Run:
         """Open every connection before anything is due."""
         for start in range(0, len(self.connections), CONNECTING):
             await asyncio.gather(*(self._open(one) for one in self.connections[start : start + CONNECTING]))
+
+    async def until_ready(self, seconds: float) -> None:
+        """Wait until the processes that the connections lead to, all of them, are ready."""
+        probed = self.connections[:: -(-len(self.connections) // PROBED)]
+        await asyncio.wait_for(asyncio.gather(*(one.until_ready() for one in probed)), seconds)
 
     async def _open(self, connection: Connection) -> None:
         source = f"127.0.0.{2 + connection.index % SOURCES}"

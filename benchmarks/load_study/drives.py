@@ -26,8 +26,8 @@ BEFORE = 6
 """minutes driven before the run: some devices are confirmed by then, others are not"""
 DURING = 4
 """minutes of the run"""
-CSV, PLAIN_CSV, ARROW = "CSV zstd", "CSV", "Arrow zstd"
-ENCODINGS = (CSV, PLAIN_CSV, ARROW)
+CSV, ARROW = "CSV zstd", "Arrow zstd"
+ENCODINGS = (CSV, ARROW)
 
 
 class Drive(NamedTuple):
@@ -55,11 +55,9 @@ def encode(samples: Samples, encoding: str) -> Body:
     """Give a minute as it is sent."""
     content = write_arrow(samples) if encoding == ARROW else write_native_csv(samples)
     kind = arrow_stream.MEDIA_TYPE if encoding == ARROW else native_csv.MEDIA_TYPE
-    headers = f"Content-Type: {kind}\r\n"
-    if encoding != PLAIN_CSV:
-        content = zstandard.compress(content)
-        headers += "Content-Encoding: zstd\r\n"
-    return Body(f"{headers}Content-Length: {len(content)}\r\n".encode(), content)
+    content = zstandard.compress(content)
+    headers = f"Content-Type: {kind}\r\nContent-Encoding: zstd\r\nContent-Length: {len(content)}\r\n"
+    return Body(headers.encode(), content)
 
 
 def encode_all(drives: Sequence[Drive], encoding: str) -> list[list[Body]]:

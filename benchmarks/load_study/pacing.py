@@ -88,12 +88,16 @@ def halfway(good: int, bad: int, step: int) -> int | None:
     return middle if good < middle < bad else None
 
 
-def bracket(tried: Mapping[int, bool], target: int, step: int) -> int | None:
-    """Give the count to try next: the target first, then between the largest held and the smallest not held."""
+def next_count(tried: Mapping[int, bool], first: int, step: int, beyond: bool) -> int | None:
+    """Give the count to try next, None when the largest one held is known well enough.
+
+    The first one is given; then between the largest held and the smallest not held. When all were held, that is
+    enough, unless the largest is wanted: then half as many again.
+    """
     if not tried:
-        return target
-    held = [count for count, good in tried.items() if good]
+        return first
+    held = max((count for count, good in tried.items() if good), default=0)
     missed = [count for count, good in tried.items() if not good]
-    if not missed:
-        return None
-    return halfway(max(held, default=0), min(missed), step)
+    if missed:
+        return halfway(held, min(missed), step)
+    return held * 3 // 2 // step * step if beyond else None

@@ -20,6 +20,17 @@ from tests.ports import free_port
 START = 300.0
 """s until it must be ready, compiling included"""
 STOP = 60.0
+STREAK = 20
+"""answers in a row, each over a connection of its own, after which every process is taken to be ready"""
+PAUSE = 0.1
+"""s between them: together longer than from the start of the first process to that of the last"""
+WORKERS = 2
+SETTINGS: dict[str, str] = {
+    "LIVELLA_REQUESTS_PER_MINUTE": "1000000",
+    "LIVELLA_DEVICE_REQUESTS_PER_MINUTE": "1000000",
+}
+"""Settings of the service under load that are not the defaults, by name in the environment: no limit on calls may
+decide the result."""
 
 
 class Service(NamedTuple):
@@ -35,17 +46,26 @@ class Service(NamedTuple):
 
 
 @contextmanager
-def running(url: str, directory: Path, disk: Disk, workers: int = 2) -> Iterator[Service]:
+def running(url: str, directory: Path, disk: Disk) -> Iterator[Service]:
     """Run `livella serve` on a database."""
-    command = [sys.executable, "-c", "from api.cli import main; main()", "serve", "--workers", str(workers)]
-    environment = {"LIVELLA_DATABASE_URL": url, "LIVELLA_ADMIN_KEY": ADMIN_KEY, "LIVELLA_DATA_DIR": str(directory)}
-    with serving(command, directory, environment | disk.environment, "/readyz") as service:
+    command = [sys.executable, "-c", "from api.cli import main; main()", "serve", "--workers", str(WORKERS)]
+    own = {"LIVELLA_DATABASE_URL": url, "LIVELLA_ADMIN_KEY": ADMIN_KEY, "LIVELLA_DATA_DIR": str(directory)}
+    with serving(command, directory, SETTINGS | own | disk.environment) as service:
         yield service
 
 
 @contextmanager
-def serving(command: Sequence[str], directory: Path, environment: dict[str, str], ready: str) -> Iterator[Service]:
-    """Run a command that takes `--port`, from when it answers at `ready`, until it has ended."""
+def running_naive(url: str, directory: Path, disk: Disk) -> Iterator[Service]:
+    """Run the baseline on a database."""
+    command = [sys.executable, "-m", "uvicorn", "benchmarks.naive:app", "--workers", str(WORKERS), "--no-access-log"]
+    command += ["--timeout-keep-alive", "120", "--log-level", "warning"]
+    with serving(command, directory, {"NAIVE_DATABASE_URL": url} | disk.environment) as service:
+        yield service
+
+
+@contextmanager
+def serving(command: Sequence[str], directory: Path, environment: dict[str, str]) -> Iterator[Service]:
+    """Run a command that takes `--port`, from when it says that it is ready, until it has ended."""
     port = free_port()
     log = directory / f"service-{port}.log"
     everything = os.environ | {"PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1"} | environment
@@ -54,18 +74,19 @@ def serving(command: Sequence[str], directory: Path, environment: dict[str, str]
             [*command, "--port", str(port)], cwd=ROOT, env=everything, stdout=out, stderr=out, start_new_session=True
         )
     try:
-        _wait(process, f"http://127.0.0.1:{port}{ready}", log)
+        _wait(process, f"http://127.0.0.1:{port}/readyz", log)
         yield Service(port, process.pid)
     finally:
         _end(process)
 
 
 def _wait(process: "subprocess.Popen[bytes]", url: str, log: Path) -> None:
-    deadline = time.monotonic() + START
-    while not answers(url):
+    deadline, streak = time.monotonic() + START, 0
+    while streak < STREAK:
         if process.poll() is not None or time.monotonic() > deadline:
             raise RuntimeError(f"the service does not start:\n{log.read_text(encoding='utf-8')}")
-        time.sleep(0.1)
+        streak = streak + 1 if answers(url) else 0
+        time.sleep(PAUSE)
 
 
 def answers(url: str) -> bool:
