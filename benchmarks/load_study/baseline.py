@@ -34,4 +34,4 @@ def count_wrong(url: str, devices: Sequence[Device]) -> int:
     with Session(engine) as session:
         found = {row[0]: row[1] for row in session.execute(counted)}
     engine.dispose()
-    return sum(found.get(box.name, 0) != box.acknowledged for box in devices)
+    return sum(not box.stored_as_told(found.get(box.name, 0)) for box in devices)

@@ -24,6 +24,8 @@ RECONNECT = 1.0
 """s until a device whose connection broke tries again"""
 PROBED = 400
 """connections, at most, over which it is asked whether the process at the other end is ready"""
+HOPELESS = 10.0
+"""s: when as many chunks wait for an answer as become due in that time, the count is not held, and the run ends"""
 PATIENCE = 0.2
 """s until it is asked again when the answer does not say how long to wait"""
 
@@ -45,7 +47,13 @@ class Device:
         self.session = session
         self.key = key
         self.acknowledged = 0
+        self.unsure = False
+        """what was sent last has no answer: it may be stored or not"""
         self.first_seq = first_seq
+
+    def stored_as_told(self, count: int) -> bool:
+        """Tell whether the number of chunks that are stored is what was acknowledged."""
+        return count - self.acknowledged in ({0, 1} if self.unsure else {0})
 
     def request(self, host: str) -> tuple[bytes, bytes]:
         """Give head and body of the next request."""
@@ -92,7 +100,9 @@ class Connection(asyncio.Protocol):
     def _send(self) -> None:
         assert self.transport is not None
         self.busy = True
-        self.transport.writelines(self.queue[0][0].request(self.run.host))
+        device = self.queue[0][0]
+        device.unsure = True
+        self.transport.writelines(device.request(self.run.host))
 
     async def until_ready(self) -> None:
         """Ask the process at the other end, before anything is due, until it is ready."""
@@ -133,6 +143,7 @@ class Connection(asyncio.Protocol):
         device, due = self.queue.popleft()
         self.busy = False
         device.acknowledged += status == OK
+        device.unsure = status == 0
         self.run.answers.append(Answer(due, self.run.now() - due, status))
         if self.queue and self.transport is not None:
             self._send()
@@ -181,21 +192,30 @@ class Run:
         self._opening.add(task)
         task.add_done_callback(self._opening.discard)
 
-    async def play(self, plan: Plan, at_start: Callable[[], None], at_end: Callable[[], None], drain: float) -> None:
-        """Post what becomes due in a plan; call `at_start` after the warm-up and `at_end` when nothing more is due."""
+    async def play(self, plan: Plan, at_start: Callable[[], None], at_end: Callable[[], None], drain: float) -> float:
+        """Post what becomes due in a plan; call `at_start` after the warm-up and `at_end` when nothing more is due.
+
+        Gives the s after which it ended: those of the plan, or fewer if there was no hope.
+        """
         schedule = sorted((due, i) for i in range(len(self.devices)) for due in due_times(i, plan))
         self._zero = time.monotonic()
-        started = False
+        started, look = False, plan.warm_up + HOPELESS
         for due, i in schedule:
             if (wait := due - self.now()) > 0:
                 await asyncio.sleep(wait)
             if not started and due >= plan.warm_up:
                 started = True
                 at_start()
+            if due >= look:
+                look = due + 1.0
+                if self.unanswered() > HOPELESS * plan.rate:
+                    at_end()
+                    return due
             self.connections[i % len(self.connections)].post(self.devices[i], due)
         await asyncio.sleep(max(0.0, plan.seconds - self.now()))
         at_end()
         await self._drain(drain)
+        return plan.seconds
 
     async def _drain(self, seconds: float) -> None:
         deadline = time.monotonic() + seconds

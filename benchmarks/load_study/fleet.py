@@ -98,6 +98,10 @@ def _put(tx: WriteSession, context: Context, name: str, like: Prototype, bodies:
     return Device(name, key, SESSION, bodies, like.session.next_seq)
 
 
+def _as_told(device: Device, next_seq: int, count: int) -> bool:
+    return next_seq == device.first_seq + count and device.stored_as_told(count)
+
+
 def check(context: Context, fleet_sent: Sequence[Device]) -> Stored:
     """Compare what is stored with what was acknowledged: each chunk once, its effect once."""
     counted = (
@@ -112,6 +116,5 @@ def check(context: Context, fleet_sent: Sequence[Device]) -> Stored:
     )
     with context.database.read() as tx:
         found = {name: (next_seq, count) for name, next_seq, count in tx.connection.execute(counted)}
-    wanted = {device.name: (device.first_seq + device.acknowledged, device.acknowledged) for device in fleet_sent}
-    wrong = sum(found.get(name) != numbers for name, numbers in wanted.items())
+    wrong = sum(not _as_told(device, *found[device.name]) for device in fleet_sent)
     return Stored(sum(count for _, count in found.values()), wrong)

@@ -105,10 +105,10 @@ def _play(running: Service, database_pid: int | None, disk: Disk, devices: Seque
         run = Run(running.port, devices, connections_possible())
         await run.connect()
         await run.until_ready(service.START)
-        await run.play(plan, lambda: meters.append(read()), at_end, DRAIN)
-        unanswered = run.unanswered()
+        ended = await run.play(plan, lambda: meters.append(read()), at_end, DRAIN)
+        traffic = Traffic(list(run.answers), run.unanswered(), len(run.connections), ended)
         await run.close()
-        return Traffic(run.answers, unanswered, len(run.connections))
+        return traffic
 
     return conclude(uvloop.run(play()), plan, meters[0], meters[-1], memory)
 

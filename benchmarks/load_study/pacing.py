@@ -49,6 +49,15 @@ class Plan(NamedTuple):
         """How long chunks become due."""
         return self.warm_up + self.measure
 
+    @property
+    def rate(self) -> float:
+        """Chunks due per s."""
+        return self.devices / PERIOD
+
+    def ended(self, seconds: float) -> "Plan":
+        """Give the plan as it was carried out, when it ended after so many s."""
+        return self._replace(measure=seconds - self.warm_up)
+
 
 def phase(device: int, devices: int, period: float = PERIOD) -> float:
     """Give the s at which a device's first chunk is due: evenly spread over the period."""

@@ -20,8 +20,8 @@ for six minutes before and drives on; some mountings are confirmed, others are n
 whatever became of those before it, and its latency counts from then. A count is held when 99 % of the answers come
 within {limits}, none is an error or missing, and afterwards every
 acknowledged chunk is found in the database exactly once. The counts wanted are measured for {full:.0f} s; where one is
-missed, shorter runs look for what is held, and for SQLite with CSV also for what is held beyond.
-Figures differ from run to run, by a tenth and more on a shared machine."""
+missed, shorter runs look for what is held, and for SQLite with CSV also for what is held beyond. A run without hope is
+broken off. Figures differ from run to run, by a tenth and more on a shared machine."""
 COLUMNS = [
     "",
     "devices",

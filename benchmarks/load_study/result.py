@@ -60,10 +60,13 @@ class Traffic(NamedTuple):
     answers: Sequence[Answer]
     unanswered: int
     connections: int
+    ended: float
+    """s after the start"""
 
 
 def conclude(traffic: Traffic, plan: Plan, first: Meter, last: Meter, rss: list[float]) -> Result:
     """Make a result of the traffic, and of the meters after the warm-up and at the end."""
+    plan = plan.ended(traffic.ended)
     due = measured(traffic.answers, plan)
     spent = Meter(*(after - before for before, after in zip(first, last, strict=True)))
     count = max(1, sum(plan.warm_up <= a.due + a.latency < plan.seconds for a in traffic.answers))

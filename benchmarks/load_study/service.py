@@ -19,7 +19,8 @@ from tests.ports import free_port
 
 START = 300.0
 """s until it must be ready, compiling included"""
-STOP = 60.0
+STOP = 10.0
+"""s it may take to end; what is stored is looked at afterwards in any case"""
 STREAK = 20
 """answers in a row, each over a connection of its own, after which every process is taken to be ready"""
 PAUSE = 0.1

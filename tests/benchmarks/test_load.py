@@ -10,6 +10,7 @@ import pytest
 from api.formats.writer import write_native_csv
 from benchmarks import naive
 from benchmarks.load_study.cells import CELLS, NAIVE, Cell, why_not
+from benchmarks.load_study.client import Device
 from benchmarks.load_study.drives import ARROW, CHUNK, CSV
 from benchmarks.load_study.measuring import NotSlowedError, measure
 from benchmarks.load_study.pacing import Answer, Latency, Plan, due_times, errors, measured, next_count, quantiles
@@ -87,10 +88,25 @@ def test_a_count_is_held_only_if_nothing_went_wrong() -> None:
 
 def test_figures_are_those_between_the_meters() -> None:
     answers = [Answer(1.0, 0.1, 200), Answer(19.9, 0.2, 200), Answer(30.0, 0.3, 200), Answer(79.9, 0.2, 503)]
-    seen = conclude(Traffic(answers, 2, 4), PLAN, Meter(1.0, 2.0, 3.0, 4.0), Meter(2.0, 2.5, 3.5, 8.0), [100.0])
+    seen = conclude(Traffic(answers, 2, 4, 80.0), PLAN, Meter(1.0, 2.0, 3.0, 4.0), Meter(2.0, 2.5, 3.5, 8.0), [100.0])
     assert (seen.server_cpu, seen.database_cpu, seen.generator_cpu, seen.fsyncs) == (0.75, 0.25, 0.25, 2.0)
     assert (seen.generator_share, seen.cores) == (0.25, 2.0 / 60.0)
     assert (seen.chunks, seen.errors, seen.unanswered) == (2, {"503": 1}, 2)
+
+
+def test_a_run_without_hope_counts_for_the_time_it_took() -> None:
+    answers = [Answer(25.0, 2.0, 200), Answer(30.0, 9.0, 200)]
+    seen = conclude(Traffic(answers, 50, 4, 32.0), PLAN, Meter(0, 0, 0, 0), Meter(6.0, 0, 0, 0), [100.0])
+    assert (seen.seconds, seen.chunks, seen.cores, seen.server_cpu) == (12.0, 2, 0.5, 6.0)
+    assert not seen.held(10.0)
+
+
+def test_a_chunk_without_an_answer_may_be_stored_or_not() -> None:
+    device = Device("box", "key", "drive", [], 0)
+    device.acknowledged = 3
+    assert [device.stored_as_told(count) for count in (2, 3, 4)] == [False, True, False]
+    device.unsure = True
+    assert [device.stored_as_told(count) for count in (2, 3, 4, 5)] == [False, True, True, False]
 
 
 def test_what_cannot_be_slowed_down_is_not_measured() -> None:
