@@ -116,4 +116,5 @@ def _play(running: Service, database_pid: int | None, disk: Disk, devices: Seque
 def _read(pid: int, database_pid: int | None, disk: Disk) -> Meter:
     own = processes.read(os.getpid())
     database_cpu = 0.0 if database_pid is None else processes.cpu(database_pid)
-    return Meter(processes.cpu(pid), database_cpu, 0.0 if own is None else own.cpu, disk.fsyncs())
+    seen = disk.fsyncs() if database_pid is None else float("nan")  # those of PostgreSQL are its own
+    return Meter(processes.cpu(pid), database_cpu, 0.0 if own is None else own.cpu, seen)
