@@ -12,6 +12,8 @@ import numpy as np
 
 PERIOD = 60.0
 """s between two chunks of a device"""
+CAREFUL = 0.8
+"""of what an overloaded service answers it is likely to hold so much"""
 OK = 200
 
 
@@ -97,16 +99,23 @@ def halfway(good: int, bad: int, step: int) -> int | None:
     return middle if good < middle < bad else None
 
 
-def next_count(tried: Mapping[int, bool], first: int, step: int, beyond: bool) -> int | None:
+def below(missed: int, served: float, step: int) -> int | None:
+    """Give the count to try after one that was missed: somewhat fewer than could be served then."""
+    count = max(step, min(int(CAREFUL * served), missed // 2 + missed // 4) // step * step)
+    return count if count < missed else None
+
+
+def next_count(tried: Mapping[int, bool], served: float, first: int, step: int, beyond: bool) -> int | None:
     """Give the count to try next, None when the largest one held is known well enough.
 
-    The first one is given; then between the largest held and the smallest not held. When all were held, that is
-    enough, unless the largest is wanted: then half as many again.
+    The first one is given; if it was missed, one that fits what was `served` when the smallest count was missed; then
+    between the largest held and the smallest not held. When all were held, that is enough, unless the largest is
+    wanted: then half as many again.
     """
     if not tried:
         return first
     held = max((count for count, good in tried.items() if good), default=0)
-    missed = [count for count, good in tried.items() if not good]
-    if missed:
-        return halfway(held, min(missed), step)
-    return held * 3 // 2 // step * step if beyond else None
+    missed = min((count for count, good in tried.items() if not good), default=0)
+    if not missed:
+        return held * 3 // 2 // step * step if beyond else None
+    return halfway(held, missed, step) if held else below(missed, served, step)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from benchmarks.load_study.pacing import Answer, Latency, Plan, errors, measured, quantiles
+from benchmarks.load_study.pacing import PERIOD, Answer, Latency, Plan, errors, measured, quantiles
 
 
 class Result(NamedTuple):
@@ -15,6 +15,8 @@ class Result(NamedTuple):
     latency: Latency
     chunks: int
     """due and answered in the time measured"""
+    served: float
+    """devices that post as often as was answered"""
     errors: dict[str, int]
     """by status"""
     unanswered: int
@@ -75,6 +77,7 @@ def conclude(traffic: Traffic, plan: Plan, first: Meter, last: Meter, rss: list[
         seconds=plan.measure,
         latency=quantiles([answer.latency for answer in due]),
         chunks=len(due),
+        served=count / plan.measure * PERIOD,
         errors=errors(traffic.answers),
         unanswered=traffic.unanswered,
         wrong=0,

@@ -25,7 +25,7 @@ class Study(NamedTuple):
 
 
 def carry_out(cells: Mapping[str, Cell], full: Plan, short: Plan, seconds: float, run: Measure = measure) -> Study:
-    """Measure the cells in at most about so many seconds."""
+    """Measure the cells in at most about so many seconds; the baseline is narrowed down first, for the ratio."""
     deadline = time.monotonic() + seconds
     study = Study({}, {})
     for name, cell in cells.items():
@@ -34,7 +34,7 @@ def carry_out(cells: Mapping[str, Cell], full: Plan, short: Plan, seconds: float
         if time.monotonic() + short.seconds + OVERHEAD > deadline:
             print(f"load: no time left to narrow down {', '.join(waiting)}", flush=True)
             break
-        name = min(waiting, key=lambda name: len(study.runs[name]))
+        name = min(waiting, key=lambda name: (len(study.runs[name]), not cells[name].naive))
         count = _next(cells[name], study.runs[name])
         assert count is not None
         _add(study, name, cells[name], run(cells[name], short._replace(devices=count)))
@@ -60,7 +60,12 @@ def _add(study: Study, name: str, cell: Cell, result: Result) -> None:
 
 def _next(cell: Cell, results: Sequence[Result]) -> int | None:
     tried = {result.devices: result.held(cell.limit) for result in results}
-    return next_count(tried, cell.devices, cell.step, cell.beyond)
+    fewest = min((result for result in results if not result.held(cell.limit)), key=_devices, default=None)
+    return next_count(tried, 0.0 if fewest is None else fewest.served, cell.devices, cell.step, cell.beyond)
+
+
+def _devices(result: Result) -> int:
+    return result.devices
 
 
 def told(name: str, result: Result, limit: float) -> str:

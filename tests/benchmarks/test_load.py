@@ -30,6 +30,7 @@ def result(devices: int, p99: float, unanswered: int = 0, wrong: int = 0, cpu: f
         seconds=60.0,
         latency=Latency(0.01, 0.02, p99, 0.5),
         chunks=100,
+        served=0.8 * devices,
         errors={},
         unanswered=unanswered,
         wrong=wrong,
@@ -66,6 +67,8 @@ def test_the_warm_up_is_not_measured_but_its_errors_count() -> None:
         ({1600: True}, True, 2400),
         ({1600: True, 2400: False}, True, 2000),
         ({1600: False}, False, 800),
+        ({1600: False, 800: False}, False, 600),
+        ({1600: False, 100: False}, False, None),
         ({1600: False, 800: True}, False, 1200),
         ({1600: False, 1500: True}, True, None),
         ({1600: True, 1500: False}, True, None),
@@ -74,7 +77,7 @@ def test_the_warm_up_is_not_measured_but_its_errors_count() -> None:
 def test_the_target_is_tried_first_then_what_lies_between(
     tried: dict[int, bool], beyond: bool, wanted: int | None
 ) -> None:
-    assert next_count(tried, 1600, 100, beyond) == wanted
+    assert next_count(tried, 1000.0, 1600, 100, beyond) == wanted
 
 
 def test_a_count_is_held_only_if_nothing_went_wrong() -> None:
@@ -97,7 +100,7 @@ def test_figures_are_those_between_the_meters() -> None:
 def test_a_run_without_hope_counts_for_the_time_it_took() -> None:
     answers = [Answer(25.0, 2.0, 200), Answer(30.0, 9.0, 200)]
     seen = conclude(Traffic(answers, 50, 4, 32.0), PLAN, Meter(0, 0, 0, 0), Meter(6.0, 0, 0, 0), [100.0])
-    assert (seen.seconds, seen.chunks, seen.cores, seen.server_cpu) == (12.0, 2, 0.5, 6.0)
+    assert (seen.seconds, seen.chunks, seen.cores, seen.server_cpu, seen.served) == (12.0, 2, 0.5, 6.0, 5.0)
     assert not seen.held(10.0)
 
 
@@ -129,7 +132,7 @@ def test_where_the_target_is_missed_the_study_finds_what_is_held() -> None:
     tried: list[tuple[str, int, float]] = []
     cells = {"small": Cell("SQLite", CSV, 640), "large": Cell("SQLite", ARROW, 1600)}
     study = carry_out(cells, PLAN, PLAN._replace(measure=5.0), 1e9, pretend)
-    assert tried[:3] == [(CSV, 640, 60.0), (ARROW, 1600, 60.0), (ARROW, 800, 5.0)]
+    assert tried[:3] == [(CSV, 640, 60.0), (ARROW, 1600, 60.0), (ARROW, 1000, 5.0)]
     assert len(study.runs["small"]) == 1
     best = largest_held(study.runs["large"], 0.2)
     assert best is not None
