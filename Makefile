@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel fuzz fuzz-api clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel bench-load bench-age fuzz fuzz-api clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -65,13 +65,19 @@ test: setup  ## everything
 	pytest -m "not browser" --ignore tests/core -n 3
 
 bench: setup
-	for b in benchmarks/*.py; do $(BIN)/python $$b || exit 1; done
+	for b in accuracy age kernel load thesis; do $(BIN)/python benchmarks/$$b.py || exit 1; done
 
 bench-accuracy: setup  ## accuracy, honesty and alarms on thousands of drives: writes docs/accuracy.md
 	$(BIN)/python benchmarks/accuracy.py
 
 bench-kernel: setup  ## speed beside numpy and filterpy: writes docs/performance.md
 	$(BIN)/python benchmarks/kernel.py
+
+bench-load: setup  ## devices the service holds, 20 minutes: writes docs/performance.md
+	$(BIN)/python benchmarks/load.py
+
+bench-age: setup  ## uploads, lists and charts after a year beside fresh ones
+	$(BIN)/python benchmarks/age.py
 
 FUZZ_SECONDS ?= 80
 fuzz: setup  ## every parser against made-up bytes, 11 minutes; FUZZ_SECONDS for each of the eight. Findings in out/fuzz

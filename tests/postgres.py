@@ -3,7 +3,6 @@
 import glob
 import os
 import shutil
-import socket
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
@@ -16,6 +15,7 @@ import pytest
 
 from storage.database import Database
 from storage.migrate import upgrade
+from tests.ports import free_port
 
 _numbers = count(1)
 
@@ -28,8 +28,9 @@ def find_program(name: str) -> str | None:
 class Server:
     """A running server on 127.0.0.1."""
 
-    def __init__(self, port: int, control: Callable[..., None]) -> None:
+    def __init__(self, port: int, directory: Path, control: Callable[..., None]) -> None:
         self.port = port
+        self._directory = directory
         self._control = control
         self._template: str | None = None
 
@@ -41,6 +42,11 @@ class Server:
     def stop(self) -> None:
         """End it at once, as a crash does; what was committed is in its log."""
         self._control("-m", "immediate", "stop")
+
+    @property
+    def pid(self) -> int:
+        """The process that the others are children of."""
+        return int((self._directory / "postmaster.pid").read_text().split()[0])
 
     def url(self, name: str) -> str:
         return f"postgresql://livella@127.0.0.1:{self.port}/{name}"
@@ -81,14 +87,14 @@ def running_server() -> Iterator[Server]:
     directory = Path(tempfile.mkdtemp(prefix="livella-postgres-"))
     if user is not None:
         shutil.chown(directory, user)
-    data = str(directory / "data")
+    data = directory / "data"
 
     def control(*arguments: str) -> None:
-        _run(user, pg_ctl, "-D", data, "-w", "-l", str(directory / "log"), *arguments)
+        _run(user, pg_ctl, "-D", str(data), "-w", "-l", str(directory / "log"), *arguments)
 
-    server = Server(_free_port(), control)
+    server = Server(free_port(), data, control)
     try:
-        _run(user, initdb, "-D", data, "-U", "livella", "-A", "trust", "-E", "UTF8", "--no-sync")
+        _run(user, initdb, "-D", str(data), "-U", "livella", "-A", "trust", "-E", "UTF8", "--no-sync")
         server.start()
         try:
             yield server
@@ -100,9 +106,3 @@ def running_server() -> Iterator[Server]:
 
 def _run(user: str | None, *command: str) -> None:
     subprocess.run(command, check=True, user=user, cwd="/", stdout=subprocess.DEVNULL, stderr=subprocess.STDOUT)
-
-
-def _free_port() -> int:
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return int(listener.getsockname()[1])

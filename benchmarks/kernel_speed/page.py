@@ -28,6 +28,7 @@ from benchmarks.kernel_speed.steps import (
     usual,
 )
 from benchmarks.kernel_speed.timing import Contender, Timing, in_turn
+from benchmarks.sections import write_section
 
 STEPS = 60
 """of numpy and filterpy between two looks at the clock"""
@@ -174,5 +175,5 @@ def write_page(repeats: int) -> None:
     words = {True: "met", False: "not met", None: "not measured"}
     judged = [[t.what, t.wanted, t.measured, words[t.met]] for t in verdicts(timings, shapes)]
     _show("Targets", ("target", "measured", "verdict"), judged)
-    (DOCS / "performance.md").write_text(assemble(timings, shapes, repeats), encoding="utf-8")
+    write_section(DOCS / "performance.md", "kernel", assemble(timings, shapes, repeats))
     print(f"kernel: wrote {DOCS / 'performance.md'}", flush=True)
