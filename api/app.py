@@ -16,11 +16,12 @@ from anyio import to_thread
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from api import errors, headers, page
+from api import errors, headers, page, rates
 from api.live import Hub
 from api.routes import api, service
 from api.services import housekeeping, startup
 from api.services.context import Context, utc_now
+from api.services.limiting import Rates
 from api.settings import Settings
 
 log = logging.getLogger(__name__)
@@ -32,16 +33,18 @@ class State(TypedDict):
     context: Context
     hub: Hub
     ready: threading.Event
+    rates: Rates
 
 
 def create_app(settings: Settings | None = None, clock: Callable[[], datetime] = utc_now) -> FastAPI:
     """Make the application; settings come from the environment unless given."""
     chosen = settings or Settings()
+    allowed = Rates(chosen)
     app = FastAPI(
         title="Livella",
         version=version("livella"),
         description="Automatic mounting-angle calibration for vehicle black boxes.",
-        lifespan=lambda _: _lifespan(chosen, clock),
+        lifespan=lambda _: _lifespan(chosen, clock, allowed),
         docs_url=None,
         redoc_url=None,
         responses=errors.RESPONSES,
@@ -51,6 +54,7 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
     app.include_router(service.router)
     app.include_router(api)
     app.router.default = GZipMiddleware(page.Page(app.router.default, page.STATIC))
+    app.add_middleware(rates.RateHeaders, rates=allowed)
     app.add_middleware(headers.SecurityHeaders)
     _describe(app)
     return app
@@ -66,7 +70,7 @@ def _describe(app: FastAPI) -> None:
 
 
 @asynccontextmanager
-async def _lifespan(settings: Settings, clock: Callable[[], datetime]) -> AsyncIterator[State]:
+async def _lifespan(settings: Settings, clock: Callable[[], datetime], rates: Rates) -> AsyncIterator[State]:
     context = Context.make(settings, clock)
     hub = Hub(context.database)
     context = replace(context, wake=hub.wake)
@@ -80,9 +84,10 @@ async def _lifespan(settings: Settings, clock: Callable[[], datetime]) -> AsyncI
         tasks.start_soon(hub.run)
         tasks.start_soon(housekeeping.run, context)
         with _ending_with(hub.close):
-            yield State(context=context, hub=hub, ready=ready)
+            yield State(context=context, hub=hub, ready=ready, rates=rates)
         hub.close()
         tasks.cancel_scope.cancel()  # threads at work are waited for
+    await to_thread.run_sync(housekeeping.finish, context)
     context.database.close()
 
 

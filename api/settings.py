@@ -43,6 +43,21 @@ class Settings(BaseSettings):
         64, ge=1, le=1024, description="Chunks waiting in one session that declare the gap."
     )
     session_hours: float = Field(12.0, gt=0, le=720, description="Hours until a sign-in to the page ends.")
+    device_requests_per_minute: int = Field(
+        120, ge=1, description="Requests a minute with the key of a device, for each server process."
+    )
+    requests_per_minute: int = Field(
+        1200, ge=1, description="Requests a minute with any other key, for each server process."
+    )
+    failures_per_minute: int = Field(
+        20, ge=1, description="Requests a minute with unknown keys from one address, for each server process."
+    )
+    forwarded_allow_ips: str = Field(
+        "127.0.0.1",
+        description="Proxies whose `X-Forwarded-For` and `X-Forwarded-Proto` are believed: addresses or networks "
+        "separated by commas, or `*`.",
+    )
+    audit_days: float = Field(730.0, gt=0, description="Days the audit trail is kept.")
     history_days: float = Field(
         90.0,
         gt=0,

@@ -96,6 +96,17 @@ api_keys = sa.Table(
     sqlite_autoincrement=True,
 )
 
+sign_ins = sa.Table(
+    "sign_ins",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    sa.Column("digest", sa.LargeBinary(32), nullable=False, unique=True),
+    sa.Column("key_pk", BIG, sa.ForeignKey("api_keys.pk", ondelete="CASCADE"), nullable=False, index=True),
+    sa.Column("created_at", Instant, nullable=False),
+    sa.Column("expires_at", Instant, nullable=False, index=True),
+    sqlite_autoincrement=True,
+)
+
 sessions = sa.Table(
     "sessions",
     metadata,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import httpx
 
-from tests.service import ADMIN_KEY, COMPILE_SECONDS, Api
+from tests.service import ADMIN_KEY, COMPILE_SECONDS, NO_LIMITS, Api
 
 ROOT = Path(__file__).parent.parent
 
@@ -30,6 +30,7 @@ class ServerProcess:
         self.environment = os.environ | {
             "LIVELLA_DATABASE_URL": database_url,
             "LIVELLA_ADMIN_KEY": ADMIN_KEY,
+            **{f"LIVELLA_{name.upper()}": str(value) for name, value in NO_LIMITS.items()},
             **{f"LIVELLA_{name.upper()}": value for name, value in settings.items()},
         }
         self.process: subprocess.Popen[bytes] | None = None

@@ -36,6 +36,7 @@ def run(flags: dict[str, Any]) -> None:
         server_header=False,
         access_log=False,
         ws="none",
+        forwarded_allow_ips=settings.forwarded_allow_ips,
         log_config=_logging(),
     )
 

@@ -2,8 +2,8 @@
 
 from fastapi import APIRouter
 
-from api.routes import alerts, chunks, devices, fleet, installations, session, stream
+from api.routes import alerts, audit, chunks, devices, fleet, installations, keys, session, stream
 
 api = APIRouter(prefix="/api/v1")
-for resource in (session, devices, chunks, installations, alerts, fleet, stream):
+for resource in (session, devices, chunks, installations, alerts, fleet, stream, keys, audit):
     api.include_router(resource.router)

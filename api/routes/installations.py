@@ -2,13 +2,12 @@
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Header, Path, Query, Response
+from fastapi import APIRouter, Header, Path, Query, Response
 from pydantic import AwareDatetime
 
 from api import schemas
-from api.dependencies import AnyDevice, BeforeNumber, CurrentContext, Limit, Requires
+from api.dependencies import AnyDevice, BeforeNumber, CurrentContext, Installer, Limit
 from api.services import fleet, history, paging, presenting
-from api.services.access import Role
 from api.services.errors import NotFoundError
 from storage import mounts
 
@@ -23,19 +22,19 @@ def read_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.
     return fleet.read_installation(context, device_id)
 
 
-@router.post("/installation/restart", dependencies=[Depends(Requires(Role.INSTALLER))])
-def restart_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
+@router.post("/installation/restart")
+def restart_installation(principal: Installer, device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
     """Begin anew after a deliberate refit: the mounting is forgotten, the history kept."""
-    return fleet.restart(context, device_id)
+    return fleet.restart(context, principal, device_id)
 
 
-@router.post("/installation/level", dependencies=[Depends(Requires(Role.INSTALLER))])
-def level_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
+@router.post("/installation/level")
+def level_installation(principal: Installer, device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
     """Take it that the vehicle stands on level ground now: gravity then shows how the device is tilted.
 
     409 `not-still`: the device's last data do not show it standing still, or are not new enough to tell.
     """
-    return fleet.level_start(context, device_id)
+    return fleet.level_start(context, principal, device_id)
 
 
 @router.get("/estimates")

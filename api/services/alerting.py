@@ -9,7 +9,8 @@ from datetime import datetime
 
 import core
 from api import schemas
-from api.services import findings, presenting, publishing
+from api.services import auditing, findings, presenting, publishing
+from api.services.access import Principal
 from api.services.context import Context
 from api.services.errors import NotFoundError
 from storage import alerts, installations
@@ -40,21 +41,22 @@ def find(context: Context, pk: int) -> schemas.Alert:
         return presenting.alert(_found(tx, pk))
 
 
-def acknowledge(context: Context, pk: int, by: str, note: str | None) -> schemas.Alert:
+def acknowledge(context: Context, principal: Principal, pk: int, note: str | None) -> schemas.Alert:
     """Record who has seen an open alert; one that was seen or is over stays as it is."""
-    return _settle(context, pk, by, note, (alerts.OPEN,), alerts.acknowledge)
+    return _settle(context, principal, pk, note, "acknowledge", (alerts.OPEN,), alerts.acknowledge)
 
 
-def resolve(context: Context, pk: int, by: str, note: str | None) -> schemas.Alert:
+def resolve(context: Context, principal: Principal, pk: int, note: str | None) -> schemas.Alert:
     """Record who says that an alert is over; one that is over stays as it is."""
-    return _settle(context, pk, by, note, (alerts.OPEN, alerts.ACKNOWLEDGED), alerts.resolve)
+    return _settle(context, principal, pk, note, "resolve", (alerts.OPEN, alerts.ACKNOWLEDGED), alerts.resolve)
 
 
 def _settle(
     context: Context,
+    principal: Principal,
     pk: int,
-    by: str,
     note: str | None,
+    verb: str,
     from_states: tuple[str, ...],
     change: Callable[[WriteSession, int, str, str | None, datetime], None],
 ) -> schemas.Alert:
@@ -63,7 +65,9 @@ def _settle(
         device_id = _found(tx, pk).device_id
         row = installations.lock(tx, device_id)
         if row is not None and _found(tx, pk).state in from_states:
-            change(tx, pk, by, note, now)
+            change(tx, pk, principal.name, note, now)
+            told = {"device_id": device_id, "note": note}
+            auditing.record(tx, principal, f"alert.{verb}", f"alerts/{pk}", told, now)
             publishing.alert_changed(tx, pk, now)
             publishing.installation_touched(tx, row, device_id, context.params, now)
         shown = presenting.alert(_found(tx, pk))

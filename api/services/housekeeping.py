@@ -9,7 +9,7 @@ from anyio import to_thread
 
 from api.services import ingest
 from api.services.context import Context
-from storage import chunks, estimates, events
+from storage import audit, chunks, estimates, events, sign_ins
 
 log = logging.getLogger(__name__)
 
@@ -17,6 +17,13 @@ GAP_INTERVAL = 5.0
 """s between two looks for gaps that have been open too long"""
 TIDY_INTERVAL = 300.0
 """s between two removals of old rows"""
+USES_INTERVAL = 60.0
+"""s between two times at which the last use of the keys is written"""
+
+
+def write_uses(context: Context) -> None:
+    """Write when keys were last used."""
+    context.uses.write(context.database)
 
 
 def tidy(context: Context) -> None:
@@ -27,6 +34,16 @@ def tidy(context: Context) -> None:
         events.forget(tx, now - timedelta(minutes=settings.stream_minutes))
         estimates.forget(tx, oldest)
         chunks.forget(tx, oldest)
+        audit.forget(tx, now - timedelta(days=settings.audit_days))
+        sign_ins.forget(tx, now)
+
+
+def finish(context: Context) -> None:
+    """Do at the end what should not be lost."""
+    try:
+        write_uses(context)
+    except Exception:
+        log.exception("when keys were last used cannot be written")
 
 
 async def run(context: Context) -> None:
@@ -34,6 +51,7 @@ async def run(context: Context) -> None:
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(_every, GAP_INTERVAL, ingest.close_gaps, context)
         tasks.start_soon(_every, TIDY_INTERVAL, tidy, context)
+        tasks.start_soon(_every, USES_INTERVAL, write_uses, context)
 
 
 async def _every(seconds: float, work: Callable[[Context], None], context: Context) -> None:

@@ -33,6 +33,7 @@ def upgrade() -> None:
     _webhooks()
     _deliveries()
     _audit()
+    _sign_ins()
     op.create_table(
         "leases",
         sa.Column("name", sa.String(64), nullable=False),
@@ -109,8 +110,25 @@ def _audit() -> None:
     op.create_index("ix_audit_at", "audit", ["at"], unique=False)
 
 
+def _sign_ins() -> None:
+    op.create_table(
+        "sign_ins",
+        sa.Column("pk", BIG, nullable=False),
+        sa.Column("digest", sa.LargeBinary(32), nullable=False),
+        sa.Column("key_pk", BIG, nullable=False),
+        sa.Column("created_at", sa.BigInteger(), nullable=False),
+        sa.Column("expires_at", sa.BigInteger(), nullable=False),
+        sa.ForeignKeyConstraint(["key_pk"], ["api_keys.pk"], name="fk_sign_ins_key_pk", ondelete="CASCADE"),
+        sa.PrimaryKeyConstraint("pk", name="pk_sign_ins"),
+        sa.UniqueConstraint("digest", name="uq_sign_ins_digest"),
+        sqlite_autoincrement=True,
+    )
+    op.create_index("ix_sign_ins_key_pk", "sign_ins", ["key_pk"], unique=False)
+    op.create_index("ix_sign_ins_expires_at", "sign_ins", ["expires_at"], unique=False)
+
+
 def downgrade() -> None:
-    for table in ("leases", "audit", "webhook_deliveries", "webhooks"):
+    for table in ("sign_ins", "leases", "audit", "webhook_deliveries", "webhooks"):
         op.drop_table(table)
     for name, table, _ in reversed(INDEXES):
         op.drop_index(name, table_name=table)
