@@ -5,7 +5,6 @@ counts by the share of it that the last 60 s still cover.
 """
 
 import ipaddress
-from math import ceil
 from typing import NamedTuple
 
 from limits import RateLimitItem, RateLimitItemPerMinute
@@ -76,9 +75,9 @@ class Rates:
         before, before_left, now, now_left = self._counts.get_sliding_window(limit.key_for(who), window)
         remaining = max(0, limit.amount - int(before * before_left / window) - now)
         left = now_left - window  # s of the window now
-        if remaining == 0 and now < limit.amount:  # enough when the window before counts for less
+        if remaining == 0 and now < limit.amount:  # enough as soon as the window before counts for less
             left = before_left - window * (limit.amount - now) / before
-        return Standing(limit.namespace, limit.amount, window, remaining, max(1, ceil(left)))
+        return Standing(limit.namespace, limit.amount, window, remaining, int(left) + 1)
 
 
 def too_many(standing: Standing) -> TooManyRequestsError:
