@@ -52,10 +52,10 @@ class Settings(BaseSettings):
     failures_per_minute: int = Field(
         20, ge=1, description="Requests a minute with unknown keys from one address, for each server process."
     )
-    forwarded_allow_ips: str = Field(
-        "127.0.0.1",
+    forwarded_allow_ips: str | None = Field(
+        None,
         description="Proxies whose `X-Forwarded-For` and `X-Forwarded-Proto` are believed: addresses or networks "
-        "separated by commas, or `*`.",
+        "separated by commas, or `*`; unset: those of `FORWARDED_ALLOW_IPS`, else `127.0.0.1`.",
     )
     audit_days: float = Field(730.0, gt=0, description="Days the audit trail is kept.")
     history_days: float = Field(

@@ -1,7 +1,7 @@
 """The page's sign-in: a key becomes 256 other random bits that a browser keeps as a cookie.
 
-Only their SHA-256 is stored, in a row that signing out removes and that goes with its key: so a sign-in ends for good,
-in every process at once, and neither a copied cookie nor a backup brings it back.
+Only their SHA-256 is stored, in a row that signing out removes and that goes with its key: so a sign-in ends in every
+process at once, copies of the cookie open nothing, and nobody makes a cookie from what is stored.
 """
 
 import secrets

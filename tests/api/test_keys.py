@@ -17,7 +17,7 @@ from storage import keys
 from storage.database import Database
 from tests.conftest import Clock
 from tests.drives import chunks
-from tests.service import ADMIN_KEY, Api, Device
+from tests.service import Api, Device
 
 BY = Principal(1, Role.ADMIN, "admin")
 
@@ -138,14 +138,27 @@ def test_an_expired_key_opens_nothing(api: Api, client: TestClient, clock: Clock
     assert datetime.fromisoformat(listed(api)["Max"]["expires_at"]) == ends
 
 
-def test_a_stream_ends_with_its_sign_in(api: Api, client: TestClient) -> None:
-    client.post("/api/v1/session", json={"key": ADMIN_KEY})
-    context: Context = client.app_state["context"]
-    principal = sign_ins.recognise(context, client.cookies["livella_session"])
-    assert sign_ins.is_valid(context, principal)
-    client.delete("/api/v1/session")
-    assert not sign_ins.is_valid(context, principal)
-    assert sign_ins.is_valid(context, authenticate(context, ADMIN_KEY))
+@pytest.mark.parametrize("end", ["expiry", "revocation", "sign-out"])
+def test_an_open_stream_ends_with_what_opened_it(
+    api: Api, client: TestClient, clock: Clock, monkeypatch: pytest.MonkeyPatch, end: str
+) -> None:
+    monkeypatch.setattr("api.routes.stream.CHECK_INTERVAL", 0.0)
+    monkeypatch.setattr("api.live.IDLE_INTERVAL", 0.02)
+    made = make(api, "installer", expires_at=(clock() + timedelta(hours=1)).isoformat())
+    client.post("/api/v1/session", json={"key": made["key"]})
+    headers = {} if end == "sign-out" else {"Authorization": f"Bearer {made['key']}"}
+    stream = threading.Thread(target=client.get, args=("/api/v1/stream",), kwargs={"headers": headers})
+    stream.start()
+    stream.join(0.3)
+    assert stream.is_alive()
+    if end == "expiry":
+        clock.advance(3600)
+    elif end == "revocation":
+        api.call("DELETE", f"/keys/{made['id']}", 204)
+    else:
+        client.delete("/api/v1/session")
+    stream.join(10)
+    assert not stream.is_alive()
 
 
 def test_a_start_with_expired_admin_keys_only_makes_another(settings: Settings, clock: Clock) -> None:
