@@ -41,19 +41,6 @@ class Entry(NamedTuple):
     expires_at: datetime | None
 
 
-class Draft(NamedTuple):
-    """A key to be stored."""
-
-    digest: bytes
-    role: str
-    name: str
-    device_pk: int | None = None
-    prefix: str | None = None
-    expires_at: datetime | None = None
-    created_by: str | None = None
-    source: str = MADE
-
-
 _from = api_keys.outerjoin(devices)
 _select = sa.select(*(devices.c.id if name == "device_id" else api_keys.c[name] for name in Key._fields)).select_from(
     _from
@@ -109,9 +96,22 @@ def page(tx: ReadSession, limit: int, after: int | None = None) -> list[Entry]:
     return tx.all(Entry, _page, limit=limit, after=after or 0)
 
 
-def add(tx: WriteSession, draft: Draft, now: datetime) -> int:
+def add(
+    tx: WriteSession,
+    digest: bytes,
+    role: str,
+    name: str,
+    now: datetime,
+    device_pk: int | None = None,
+    source: str = MADE,
+    prefix: str | None = None,
+    expires_at: datetime | None = None,
+    created_by: str | None = None,
+) -> int:
     """Store a key; give its number."""
-    return int(tx.execute(_add, created_at=now, **draft._asdict()).scalar_one())
+    more = {"device_pk": device_pk, "source": source, "prefix": prefix}
+    ends = {"expires_at": expires_at, "created_by": created_by}
+    return int(tx.execute(_add, digest=digest, role=role, name=name, created_at=now, **more, **ends).scalar_one())
 
 
 def valid_of_role(tx: ReadSession, role: str, now: datetime) -> list[int]:

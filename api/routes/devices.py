@@ -18,7 +18,7 @@ def register_device(
     draft: schemas.DeviceDraft, principal: Installer, context: CurrentContext
 ) -> schemas.RegisteredDevice:
     """Register a device. Its key is shown only in this answer."""
-    return fleet.register(context, principal, draft)
+    return fleet.register(context, draft, principal)
 
 
 @router.get("")
@@ -51,16 +51,16 @@ def edit_device(
     A calibration tells on the chunks applied from then on. A mounting found with other readings may be off by what the
     calibration corrects: restart the installation afterwards.
     """
-    return fleet.edit(context, principal, device_id, patch.model_dump(exclude_unset=True))
+    return fleet.edit(context, device_id, patch.model_dump(exclude_unset=True), principal)
 
 
 @router.delete("/{device_id}", status_code=204)
 def remove_device(device_id: KnownId, principal: Installer, context: CurrentContext) -> None:
     """Remove a device with its key, its history and its alerts."""
-    fleet.remove(context, principal, device_id)
+    fleet.remove(context, device_id, principal)
 
 
 @router.post("/{device_id}/key")
 def rotate_device_key(device_id: KnownId, principal: Installer, context: CurrentContext) -> schemas.RegisteredDevice:
     """Make a new key for a device, shown only in this answer. Every key it had is revoked at once."""
-    return fleet.rotate_key(context, principal, device_id)
+    return fleet.rotate_key(context, device_id, principal)

@@ -25,7 +25,7 @@ def read_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.
 @router.post("/installation/restart")
 def restart_installation(principal: Installer, device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
     """Begin anew after a deliberate refit: the mounting is forgotten, the history kept."""
-    return fleet.restart(context, principal, device_id)
+    return fleet.restart(context, device_id, principal)
 
 
 @router.post("/installation/level")
@@ -34,7 +34,7 @@ def level_installation(principal: Installer, device_id: AnyDevice, context: Curr
 
     409 `not-still`: the device's last data do not show it standing still, or are not new enough to tell.
     """
-    return fleet.level_start(context, principal, device_id)
+    return fleet.level_start(context, device_id, principal)
 
 
 @router.get("/estimates")

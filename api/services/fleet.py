@@ -19,7 +19,9 @@ from storage.database import ReadSession, WriteSession
 UNKNOWN_DEVICE = keyring.UNKNOWN_DEVICE
 
 
-def register(context: Context, principal: Principal, draft: schemas.DeviceDraft) -> schemas.RegisteredDevice:
+def register(
+    context: Context, draft: schemas.DeviceDraft, principal: Principal = auditing.SERVICE
+) -> schemas.RegisteredDevice:
     """Register a device and make its key."""
     device_id = draft.id or f"dev-{secrets.token_hex(6)}"
     try:
@@ -64,7 +66,7 @@ def find(context: Context, device_id: str) -> schemas.Device:
     return presenting.device(row)
 
 
-def edit(context: Context, principal: Principal, device_id: str, changes: dict[str, Any]) -> schemas.Device:
+def edit(context: Context, device_id: str, changes: dict[str, Any], principal: Principal) -> schemas.Device:
     """Change the texts of a device, or the calibration of its accelerometer for the chunks still to be applied."""
     now = context.clock()
     with context.database.write() as tx:
@@ -75,7 +77,7 @@ def edit(context: Context, principal: Principal, device_id: str, changes: dict[s
     return device
 
 
-def remove(context: Context, principal: Principal, device_id: str) -> None:
+def remove(context: Context, device_id: str, principal: Principal) -> None:
     """Remove a device with its key, its history and its alerts."""
     now = context.clock()
     with context.database.write() as tx:
@@ -85,7 +87,7 @@ def remove(context: Context, principal: Principal, device_id: str) -> None:
     context.wake()
 
 
-def rotate_key(context: Context, principal: Principal, device_id: str) -> schemas.RegisteredDevice:
+def rotate_key(context: Context, device_id: str, principal: Principal) -> schemas.RegisteredDevice:
     """Make a new key for a device; what it had is revoked."""
     now = context.clock()
     with context.database.write() as tx:
@@ -122,7 +124,7 @@ def read_installation(context: Context, device_id: str) -> schemas.Installation:
         return publishing.show(tx, row, device_id, context.params)
 
 
-def restart(context: Context, principal: Principal, device_id: str) -> schemas.Installation:
+def restart(context: Context, device_id: str, principal: Principal) -> schemas.Installation:
     """Begin the calibration of a refitted device anew."""
     with context.database.write() as tx:
         calibration = Calibration.open(tx, context, device_id)
@@ -134,7 +136,7 @@ def restart(context: Context, principal: Principal, device_id: str) -> schemas.I
     return shown
 
 
-def level_start(context: Context, principal: Principal, device_id: str) -> schemas.Installation:
+def level_start(context: Context, device_id: str, principal: Principal) -> schemas.Installation:
     """Take it from an installer that the vehicle stands on level ground."""
     with context.database.write() as tx:
         calibration = Calibration.open(tx, context, device_id)

@@ -41,10 +41,18 @@ def make(
 ) -> tuple[int, str]:
     """Make a key in a transaction that tells about it; give its number and the key."""
     key = access.new_key()
-    draft = keys.Draft(
-        access.digest(key), wanted.role, wanted.name, device_pk, key[: access.SHOWN], wanted.expires_at, principal.name
+    pk = keys.add(
+        tx,
+        access.digest(key),
+        wanted.role,
+        wanted.name,
+        now,
+        device_pk,
+        prefix=key[: access.SHOWN],
+        expires_at=wanted.expires_at,
+        created_by=principal.name,
     )
-    return keys.add(tx, draft, now), key
+    return pk, key
 
 
 def replace_of_device(tx: WriteSession, principal: Principal, device_pk: int, device_id: str, now: datetime) -> str:
@@ -95,11 +103,9 @@ def _use_chosen_key(tx: WriteSession, key: str, now: datetime) -> None:
     if keys.by_digest(tx, access.digest(key)) is not None:
         return
     keys.remove_source(tx, keys.ENVIRONMENT)
-    draft = keys.Draft(
-        access.digest(key), Role.ADMIN.word, "admin", created_by=auditing.SERVICE.name, source=keys.ENVIRONMENT
-    )
-    pk = keys.add(tx, draft, now)
-    auditing.record(tx, auditing.SERVICE, "key.create", f"keys/{pk}", {"role": Role.ADMIN.word}, now)
+    by = auditing.SERVICE
+    pk = keys.add(tx, access.digest(key), Role.ADMIN.word, "admin", now, source=keys.ENVIRONMENT, created_by=by.name)
+    auditing.record(tx, by, "key.create", f"keys/{pk}", {"role": Role.ADMIN.word}, now)
 
 
 def _device(tx: ReadSession, device_id: str) -> int:

@@ -34,6 +34,7 @@ def upgrade() -> None:
     _deliveries()
     _audit()
     _sign_ins()
+    op.execute("DELETE FROM meta WHERE name = 'cookie_secret'")  # signed the cookies that `sign_ins` replaces
     op.create_table(
         "leases",
         sa.Column("name", sa.String(64), nullable=False),

@@ -103,7 +103,7 @@ def _keys(url: str, clock: Clock) -> dict[str, str | None]:
         for caller, role in (("installer", "installer"), ("manager", "manager"), ("expired key", "admin")):
             made[caller] = key = access.new_key()
             ends = clock() - timedelta(seconds=1) if caller == "expired key" else None
-            keys.add(tx, keys.Draft(access.digest(key), role, caller, expires_at=ends), clock())
+            keys.add(tx, access.digest(key), role, caller, clock(), expires_at=ends)
     database.close()
     return made
 

@@ -68,10 +68,10 @@ def test_moments_are_kept_to_the_microsecond(tables: Database) -> None:
 
 def test_references_are_enforced(tables: Database) -> None:
     with pytest.raises(IntegrityError), tables.write() as tx:
-        keys.add(tx, keys.Draft(b"x" * 32, "device", "x", device_pk=5), NOW)
+        keys.add(tx, b"x" * 32, "device", "x", NOW, device_pk=5)
     pk = add_device(tables)
     with tables.write() as tx:
-        keys.add(tx, keys.Draft(b"x" * 32, "device", "x", device_pk=pk), NOW)
+        keys.add(tx, b"x" * 32, "device", "x", NOW, device_pk=pk)
         devices.remove(tx, pk)
         assert tx.value(sa.select(sa.func.count()).select_from(api_keys)) == 0
 
