@@ -24,13 +24,13 @@ _bearer = HTTPBearer(auto_error=False, description="A key, as `Authorization: Be
 _cookie = APIKeyCookie(name=COOKIE, auto_error=False, description="Sign-in of the page, see `POST /api/v1/session`.")
 
 
-def get_context(request: Request) -> Context:
+async def get_context(request: Request) -> Context:
     """Give what the services need."""
     context: Context = request.state.context
     return context
 
 
-def get_hub(request: Request) -> Hub:
+async def get_hub(request: Request) -> Hub:
     """Give the live stream."""
     hub: Hub = request.state.hub
     return hub
@@ -114,23 +114,23 @@ class Requires:
     def __init__(self, role: Role) -> None:
         self.role = role
 
-    def __call__(self, principal: Caller) -> Principal:
+    async def __call__(self, principal: Caller) -> Principal:
         """Let the caller in or not."""
         access.require(principal, self.role)
         return principal
 
 
-def known_id(device_id: str) -> str:
+async def known_id(device_id: str) -> str:
     """Give the device of the path, if it can be one at all."""
     if not re.fullmatch(DEVICE_ID, device_id):
         raise NotFoundError(UNKNOWN_DEVICE)
     return device_id
 
 
-def own_device(device_id: str, principal: Caller) -> str:
+async def own_device(device_id: str, principal: Caller) -> str:
     """Give the device of the path, if the caller may see it: whether it exists is looked up only then."""
     access.require_device(principal, device_id)
-    return known_id(device_id)
+    return await known_id(device_id)
 
 
 KnownId = Annotated[str, Depends(known_id)]
@@ -160,7 +160,7 @@ def _too_large(limit: int) -> TooLargeError:
     return TooLargeError(f"A chunk may have at most {limit} bytes as sent.")
 
 
-def ready(request: Request) -> None:
+async def ready(request: Request) -> None:
     """Refuse work until the estimator is compiled."""
     if not request.state.ready.is_set():
         raise StartingError("The estimator is being compiled; try again in a moment.")
@@ -171,12 +171,12 @@ Limit = Annotated[int, Query(ge=1, le=500, description="Items on a page.")]
 Cursor = Annotated[str | None, Query(max_length=512, description="`next_cursor` of the page before.")]
 
 
-def cursor_text(cursor: Cursor = None) -> str | None:
+async def cursor_text(cursor: Cursor = None) -> str | None:
     """Give the text inside a cursor."""
     return None if cursor is None else paging.decode(cursor)
 
 
-def cursor_number(cursor: Cursor = None) -> int | None:
+async def cursor_number(cursor: Cursor = None) -> int | None:
     """Give the number inside a cursor."""
     return None if cursor is None else paging.decode_number(cursor)
 

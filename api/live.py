@@ -18,6 +18,8 @@ log = logging.getLogger(__name__)
 
 POLL_INTERVAL = 1.0
 """s between two looks for events of other processes"""
+PAUSE = 0.05
+"""s between two looks at least: under load many commits are read at once"""
 IDLE_INTERVAL = 15.0
 """s after which a listener without events gets an empty batch, to see to other things"""
 MEMORY = 10_000
@@ -54,6 +56,7 @@ class Hub:
                 self._remember(await to_thread.run_sync(self._read, self.position))
             except Exception:
                 log.exception("the live stream cannot read events")
+            await asyncio.sleep(PAUSE)
             await _wait(self._wake, POLL_INTERVAL)
             self._wake.clear()
 

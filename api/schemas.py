@@ -30,6 +30,8 @@ AlertState = Literal["open", "acknowledged", "resolved"]
 Vector3 = tuple[float, float, float]
 Vector4 = tuple[float, float, float, float]
 Matrix3 = tuple[Vector3, Vector3, Vector3]
+WebhookEvent = Literal["alert.opened", "alert.updated", "alert.acknowledged", "alert.resolved", "test"]
+DeliveryState = Literal["pending", "delivered", "failed"]
 
 DEVICE_ID = r"^[A-Za-z0-9][A-Za-z0-9._:-]{0,63}$"
 NO_NUL = r"^[^\x00]*$"
@@ -39,6 +41,9 @@ SessionName = Annotated[str, StringConstraints(pattern=r"^[\x21-\x7e]{1,128}$", 
 Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=128, pattern=NO_NUL)]
 Notes = Annotated[str, StringConstraints(max_length=4000, pattern=NO_NUL)]
 Words = Annotated[str, StringConstraints(max_length=128, pattern=NO_NUL)]
+WebhookUrl = Annotated[str, StringConstraints(min_length=1, max_length=2048, pattern=r"^[\x21-\x7e]+$")]
+Kinds = Annotated[list[AlertKind], Field(min_length=1, max_length=32)]
+Severities = Annotated[list[Severity], Field(min_length=1, max_length=8)]
 
 T = TypeVar("T")
 
@@ -259,7 +264,7 @@ class Upload(Document):
     installation: Installation
 
 
-# ---------------------------------------------------------------- alerts, stream, sessions
+# ---------------------------------------------------------------- alerts, webhooks, stream, sessions
 
 
 class Alert(Document):
@@ -287,6 +292,80 @@ class AlertNote(Document):
     """A remark by whoever acknowledges or resolves an alert."""
 
     note: Notes | None = None
+
+
+class WebhookDraft(Document):
+    """A webhook to make: called when an alert changes."""
+
+    name: Name
+    url: WebhookUrl
+    kinds: Kinds | None = Field(None, description="Kinds of alerts it is called for; null for all.")
+    severities: Severities | None = Field(None, description="Severities of alerts it is called for; null for all.")
+    active: bool = True
+
+
+class WebhookPatch(Document):
+    """What to change of a webhook; what is left out stays."""
+
+    name: Name = Field("", description="Not null: a webhook always has a name.")
+    url: WebhookUrl = Field("", description="Not null.")
+    kinds: Kinds | None = None
+    severities: Severities | None = None
+    active: bool = Field(True, description="Not null. Alerts that change meanwhile are not told later.")
+
+
+class Webhook(Document):
+    """A webhook, without its secret."""
+
+    id: int
+    name: str
+    url: str
+    kinds: list[AlertKind] | None
+    severities: list[Severity] | None
+    active: bool = Field(description="False when it was switched off, also by its receiver's answer 410.")
+    created_at: datetime
+    created_by: str | None
+    failing_since: datetime | None = Field(description="The first call that failed since the last one that did not.")
+    last_success_at: datetime | None
+
+
+class WebhookSecret(Document):
+    """A webhook with a new secret, which is shown only now."""
+
+    webhook: Webhook
+    secret: str = Field(description="`whsec_` and the key in base64, as the libraries of Standard Webhooks take it.")
+
+
+class WebhookDelivery(Document):
+    """A message to a webhook, and what became of it."""
+
+    id: int
+    message_id: str = Field(description="Sent as `webhook-id`, the same with every attempt.")
+    type: WebhookEvent
+    device_id: str | None
+    state: DeliveryState
+    attempts: int
+    created_at: datetime
+    next_attempt_at: datetime | None
+    last_attempt_at: datetime | None
+    last_status: int | None = Field(description="HTTP status of the last answer, if there was one.")
+    last_error: str | None
+    duration_ms: int | None = Field(description="How long the last attempt took.")
+
+
+class WebhookTest(Document):
+    """How a test call ended."""
+
+    delivered: bool
+    status: int | None = Field(description="HTTP status of the answer, if there was one.")
+    error: str | None
+    duration_ms: int
+
+
+class Redelivery(Document):
+    """Deliveries that are tried anew."""
+
+    deliveries: int
 
 
 class DeviceChange(Document):

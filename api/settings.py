@@ -61,10 +61,16 @@ class Settings(BaseSettings):
     history_days: float = Field(
         90.0,
         gt=0,
-        description="Days the angle history and the receipts of chunks are kept; mountings are kept for ever.",
+        description="Days the angle history, the receipts of chunks and the deliveries of webhooks are kept; "
+        "mountings are kept for ever.",
     )
     stream_minutes: float = Field(
         15.0, gt=0, description="Minutes a live stream that was cut off can be resumed without a gap."
+    )
+    webhook_allow_private: bool = Field(
+        False,
+        description="Webhooks may call private, loopback and link-local addresses, and use plain `http`: "
+        "only where everybody with a manager key may reach what this machine reaches.",
     )
 
     @property

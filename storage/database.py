@@ -4,15 +4,16 @@ The files beside this one make their statements once, when they are imported, wi
 call costs SQLAlchemy more time than the database needs to run it.
 """
 
-import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any, TypeVar
 
 import sqlalchemy as sa
 from sqlalchemy import event
 from sqlalchemy.engine import Connection, CursorResult, Engine, make_url
-from sqlalchemy.exc import TimeoutError  # noqa: A004 - the one that also tells that no connection is free
+
+from storage.file_lock import FileLock
+from storage.group_commit import GroupCommit
 
 T = TypeVar("T")
 
@@ -61,8 +62,8 @@ class Database:
         if self.url.drivername in {"postgresql", "postgres"}:
             self.url = self.url.set(drivername="postgresql+psycopg")
         self.is_sqlite = self.url.get_backend_name() == "sqlite"
-        self._writer = threading.Lock()
         self._reads, self._writes = _sqlite_engines(self.url) if self.is_sqlite else _postgresql_engines(self.url)
+        self._group = GroupCommit(self._writes, FileLock(self.url.database)) if self.is_sqlite else None
 
     @property
     def engine(self) -> Engine:
@@ -78,26 +79,18 @@ class Database:
     @contextmanager
     def write(self) -> Iterator[WriteSession]:
         """Open a transaction, committed durably when the block ends and rolled back when it raises."""
-        with self._one_writer(), self._writes.begin() as connection:
+        with self._transaction() as connection:
             yield WriteSession(connection)
 
-    @contextmanager
-    def _one_writer(self) -> Iterator[None]:
-        """Queue the threads of this process fairly: SQLite lets one write, and its own waiting is by chance."""
-        if not self.is_sqlite:
-            yield
-            return
-        if not self._writer.acquire(timeout=BUSY_TIMEOUT):
-            raise TimeoutError("the database is busy")
-        try:
-            yield
-        finally:
-            self._writer.release()
+    def _transaction(self) -> AbstractContextManager[Connection]:
+        return self._writes.begin() if self._group is None else self._group.transaction(BUSY_TIMEOUT)
 
     def close(self) -> None:
         """Close every connection."""
         self._reads.dispose()
         self._writes.dispose()
+        if self._group is not None:
+            self._group.close()
 
 
 def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:

@@ -267,9 +267,30 @@ webhook_deliveries = sa.Table(
     sa.Column("last_status", sa.Integer),
     sa.Column("last_error", sa.Text),
     sa.Column("duration_ms", sa.Integer),
+    sa.Column("give_up_at", Instant, nullable=False),
+    sa.Column("claims", sa.Integer, nullable=False),
+    sa.Column("claimed_until", Instant),
     sa.Index("ix_webhook_deliveries_webhook_pk_pk", "webhook_pk", "pk"),
-    sa.Index("ix_webhook_deliveries_state_next_attempt_at", "state", "next_attempt_at"),
+    sa.Index("ix_webhook_deliveries_created_at", "created_at"),
     sqlite_autoincrement=True,
+)
+delivery_pending = webhook_deliveries.c.state == sa.literal_column("'pending'")
+"""As written in the index, so that queries find it."""
+sa.Index(
+    "ix_webhook_deliveries_pending",
+    webhook_deliveries.c.webhook_pk,
+    webhook_deliveries.c.device_id,
+    webhook_deliveries.c.pk,
+    sqlite_where=delivery_pending,
+    postgresql_where=delivery_pending,
+)
+sa.Index(
+    "ix_webhook_deliveries_due",
+    webhook_deliveries.c.webhook_pk,
+    webhook_deliveries.c.next_attempt_at,
+    webhook_deliveries.c.pk,
+    sqlite_where=delivery_pending,
+    postgresql_where=delivery_pending,
 )
 
 audit = sa.Table(

@@ -31,9 +31,14 @@ _add = sa.insert(sessions).returning(sessions.c.pk)
 _save = sa.update(sessions).where(sessions.c.pk == sa.bindparam("of_pk"))
 
 
+def find(tx: ReadSession, device_pk: int, name: str) -> Session | None:
+    """Find a session by its name."""
+    return tx.one(Session, _find, device_pk=device_pk, name=name)
+
+
 def find_or_add(tx: WriteSession, device_pk: int, name: str, now: datetime) -> Session:
     """Find a session by its name; one not heard of before is new."""
-    found = tx.one(Session, _find, device_pk=device_pk, name=name)
+    found = find(tx, device_pk, name)
     if found is not None:
         return found
     added = tx.execute(_add, device_pk=device_pk, name=name, next_seq=0, created_at=now)

@@ -12,7 +12,7 @@ import pyarrow as pa
 from api.formats import checks
 from api.formats.compression import Limits
 from api.formats.delimited import Cell, Columns, Floats
-from api.formats.errors import FormatError, Problem
+from api.formats.errors import FormatError, Problem, printable
 from api.formats.log import ParsedLog
 from api.formats.native import READ, NativeTable, check_names
 
@@ -36,12 +36,12 @@ def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
         _refuse_compressed_buffers(content)
         batches, notices = _batches(content, limits)
     except (pa.ArrowException, OSError, struct.error, IndexError, UnicodeDecodeError) as error:
-        message = f"expected an Arrow IPC stream: {error}"
+        message = f"expected an Arrow IPC stream: {printable(str(error))}"
         raise FormatError.unreadable(Problem(None, None, "an Arrow IPC stream", message)) from error
     columns = _columns(batches)
     rows = columns["fix"].size
     checks.refuse_empty(rows, line=1)
-    table = NativeTable(columns, lambda row, column: Cell(row + 1, _shown(columns[column][row])))
+    table = NativeTable(columns, lambda row, column: Cell(row + 1, _shown(columns, row, column)))
     return ParsedLog(MEDIA_TYPE, digest, notices, rows, table.read)
 
 
@@ -63,7 +63,7 @@ def _check_types(schema: pa.Schema) -> None:
     for field in schema:
         if not (pa.types.is_integer(field.type) or pa.types.is_floating(field.type) or pa.types.is_boolean(field.type)):
             message = f"expected integers, floating-point numbers or booleans, found {field.type}"
-            raise FormatError.unreadable(Problem(None, field.name, "numbers", message))
+            raise FormatError.unreadable(Problem(None, printable(field.name), "numbers", message))
 
 
 def _columns(table: pa.Table) -> Columns:
@@ -76,7 +76,8 @@ def _floats(column: pa.Array) -> Floats:
     return np.ascontiguousarray(values, np.float64)
 
 
-def _shown(value: float) -> str:
+def _shown(columns: Columns, row: int, column: str) -> str:
+    value = columns[column][row] if column in columns else np.nan
     return "" if np.isnan(value) else f"{value:.12g}"
 
 

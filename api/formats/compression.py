@@ -78,7 +78,9 @@ def decode(body: bytes, encoding: str | None, limits: Limits) -> bytes:
         return _checked(body, len(body), limits)
     if name not in _CODINGS:
         raise FormatError.unsupported(f"content encoding {name!r} is not read; send gzip, zstd or none")
-    return _decompress(body, _CODINGS[name], limits)
+    coding = _CODINGS[name]
+    content = _zstd_at_once(body, limits) if coding is _ZSTD else None
+    return _decompress(body, coding, limits) if content is None else content
 
 
 def sniff_encoding(body: bytes) -> str | None:
@@ -90,6 +92,16 @@ def _checked(content: bytes, size: int, limits: Limits) -> bytes:
     if size > limits.max_decoded_bytes:
         raise FormatError.too_large(f"the log is longer than {limits.max_decoded_bytes} bytes after decompression")
     return content
+
+
+def _zstd_at_once(body: bytes, limits: Limits) -> bytes | None:
+    """Decompress one frame that states a size within the limits; None for anything else, or damaged."""
+    try:
+        frame = zstandard.get_frame_parameters(body)
+        stated = 0 < frame.content_size <= limits.max_decoded_bytes and frame.window_size <= limits.max_window_bytes
+        return zstandard.ZstdDecompressor().decompress(body, allow_extra_data=False) if stated else None
+    except zstandard.ZstdError:
+        return None
 
 
 def _decompress(body: bytes, coding: _Coding, limits: Limits) -> bytes:

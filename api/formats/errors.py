@@ -5,6 +5,11 @@ from http import HTTPStatus
 from typing import NamedTuple, Self
 
 
+def printable(name: str) -> str:
+    """Give a name that a stranger chose without what would end a line or steer a terminal."""
+    return name if name.isprintable() else name.encode("unicode_escape").decode()
+
+
 class Problem(NamedTuple):
     """One thing wrong with a log."""
 

@@ -9,7 +9,7 @@ import numpy as np
 from api.formats import checks
 from api.formats.checks import Fault, Locate, Rows
 from api.formats.delimited import Columns, Floats
-from api.formats.errors import FormatError, Problem
+from api.formats.errors import FormatError, Problem, printable
 from api.formats.log import Context, Reading
 from api.formats.reports import make_samples, without_fix
 
@@ -51,14 +51,14 @@ def check_names(names: Sequence[str], line: int | None) -> tuple[str, ...]:
         raise FormatError.unreadable(Problem(line, None, expected, f"expected {expected}"))
     unknown = [name for name in names if name not in READ and name not in NOT_READ]
     problems = [
-        *(Problem(line, name, "each column once", "the column is there twice") for name in _twice(names)),
+        *(Problem(line, printable(name), "each column once", "the column is there twice") for name in _twice(names)),
         *(Problem(line, name, f'a column "{name}"', _missing(name, unknown)) for name in _lacking(set(names))),
     ]
     if "t" in names and "t_ms" in names:
         problems.append(Problem(line, "t_ms", "either t or t_ms", 'expected either "t" or "t_ms", found both'))
     if problems:
         raise FormatError.unreadable(*problems)
-    return tuple(f'column "{name}" is not known and was ignored{_hint(name)}' for name in unknown)
+    return tuple(f'column "{printable(name)}" is not known and was ignored{_hint(name)}' for name in unknown)
 
 
 def _twice(names: Sequence[str]) -> list[str]:
@@ -76,7 +76,7 @@ def _lacking(names: set[str]) -> list[str]:
 
 def _missing(name: str, unknown: Sequence[str]) -> str:
     close = next((other for other in unknown if _known_name(other) == name), None)
-    instead = f'; "{close}" stands there instead?' if close else ""
+    instead = f'; "{printable(close)}" stands there instead?' if close else ""
     return f'the column "{name}" is missing{instead}'
 
 

@@ -105,7 +105,7 @@ class ThesisTable:
             else:
                 chosen.append(row)
                 context["report_t"], context["repeated"] = float(self._t[row]), False
-            chosen += self._repeats(row, end, interval, context)
+            chosen += self._repeats(row + 1, end, interval, context)
         return np.array(chosen, np.int64), late
 
     def _changed(self, last: list[float | None] | None) -> NDArray[np.bool_]:
@@ -139,13 +139,16 @@ class ThesisTable:
             or self._speed(np.array([row]))[0] >= PARKED
         ):
             return chosen
-        t = self._t[row:end]
-        while (index := int(np.searchsorted(t, context["report_t"] + interval - 1e-6))) < t.size and self._has_fix[
-            row + index
-        ]:
+        t, index = self._t[row:end], 0
+        while (index := max(index, self._due(t, interval, context))) < t.size and self._has_fix[row + index]:
             chosen.append(row + index)
             context["report_t"], context["repeated"] = float(t[index]), True
+            index += 1  # also where an interval is less than the clock's resolution
         return chosen
+
+    @staticmethod
+    def _due(t: Floats, interval: float, context: Context) -> int:
+        return int(np.searchsorted(t, context["report_t"] + interval - 1e-6))
 
     def _speed(self, rows: Rows) -> Floats:
         speed: Floats = self._gps[rows, GPS.index(SPEED)] * KMH

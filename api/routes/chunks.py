@@ -24,6 +24,7 @@ MAX_SEQ = 2**31 - 2
 @router.post(
     "",
     dependencies=[Depends(ready)],
+    response_model=schemas.Upload,
     responses={202: {"model": schemas.Upload, "description": "Ahead of its turn: kept, and applied when it comes"}},
     openapi_extra=BODY,
 )
@@ -31,7 +32,6 @@ def upload_chunk(
     device_id: AnyDevice,
     body: Body,
     context: CurrentContext,
-    response: Response,
     session: Annotated[schemas.SessionName, Query(description="Made by the device at power-up.")],
     seq: Annotated[int, Query(ge=0, le=MAX_SEQ, description="Number of the chunk in its session, from 0.")],
     course: Annotated[
@@ -39,7 +39,7 @@ def upload_chunk(
     ] = "auto",
     content_type: Annotated[str, Header(include_in_schema=False)] = "",
     content_encoding: Annotated[str | None, Header(description="`gzip`, `zstd` or none.")] = None,
-) -> schemas.Upload:
+) -> Response:
     """Upload one chunk of a log.
 
     200: durably stored, its effect applied exactly once. 202: ahead of its turn, durably kept. The same chunk again has
@@ -48,6 +48,5 @@ def upload_chunk(
     """
     sent = chunks.Body(body, content_type, content_encoding, course)
     answer = ingest.receive(context, device_id, ingest.Chunk(session, seq, sent))
-    if answer.chunk.state == chunks.WAITING:
-        response.status_code = 202
-    return answer
+    status = 202 if answer.chunk.state == chunks.WAITING else 200
+    return Response(answer.model_dump_json(), status, media_type="application/json")

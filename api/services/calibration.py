@@ -1,7 +1,6 @@
 """The estimator of one device during one transaction: loaded once, advanced chunk by chunk, saved once."""
 
 import logging
-from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -12,6 +11,7 @@ from api.formats.log import Reading
 from api.services import alerting, findings, history, presenting, publishing
 from api.services.context import Context
 from api.services.errors import NotFoundError, NotStillError, UnusableError
+from api.services.foresight import Foresight, advance
 from storage import devices, installations, mounts
 from storage.database import WriteSession
 from storage.installations import Installation
@@ -37,6 +37,7 @@ class Calibration:
         self.device_id = device_id
         self.row = row
         self.now = context.clock()
+        self.foresight: Foresight | None = None
         self._state: core.State | None = None
         self._shown: schemas.Installation | None = None
 
@@ -113,8 +114,7 @@ class Calibration:
             return session, None
         t_last = last_time(reading.samples)
         try:
-            params, samples = self._corrected(reading.samples)
-            state, outcome = core.advance(params, self.state, samples)
+            state, outcome = self._advance(reading)
         except core.SampleError as error:
             raise UnusableError(str(error)) from error
         self._state = state
@@ -123,15 +123,11 @@ class Calibration:
         self._record(session, outcome, t_last, received_at)
         return session, outcome
 
-    def _corrected(self, samples: core.Samples) -> tuple[core.Parameters, core.Samples]:
-        """Take the accelerometer's errors off, where they are known; what is left of the bias then is small."""
-        params = self.context.params
-        known = devices.accelerometer_calibration(self.tx, self.row.device_pk)
-        if known is None:
-            return params, samples
-        calibration = core.AccelerometerCalibration(np.array(known["gain"]), np.array(known["offset"]))
-        corrected = replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))
-        return core.calibrated(params), corrected
+    def _advance(self, reading: Reading) -> tuple[core.State, core.Outcome]:
+        correction = devices.accelerometer_calibration(self.tx, self.row.device_pk)
+        if self.foresight is not None and self.foresight.holds(reading, self.state, correction):
+            return self.foresight.state, self.foresight.outcome
+        return advance(self.context.params, correction, self.state, reading.samples)
 
     def _record(self, session: Session, outcome: core.Outcome, t_last: float, received_at: datetime) -> None:
         """Keep what a chunk brought: history, mountings, alerts, status."""

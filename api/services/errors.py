@@ -75,6 +75,13 @@ class UnusableError(ServiceError):
     title = "The samples cannot be used"
 
 
+class WebhookUrlError(ServiceError):
+    """A webhook may not call this address."""
+
+    kind = "webhook-url"
+    title = "The URL cannot be called"
+
+
 class CursorError(ServiceError):
     """A cursor this service did not give."""
 

@@ -7,9 +7,9 @@ from datetime import timedelta
 import anyio
 from anyio import to_thread
 
-from api.services import ingest
+from api.services import ingest, webhooks_dispatch
 from api.services.context import Context
-from storage import audit, chunks, estimates, events, sign_ins
+from storage import audit, chunks, deliveries, estimates, events, sign_ins
 
 log = logging.getLogger(__name__)
 
@@ -34,6 +34,7 @@ def tidy(context: Context) -> None:
         events.forget(tx, now - timedelta(minutes=settings.stream_minutes))
         estimates.forget(tx, oldest)
         chunks.forget(tx, oldest)
+        deliveries.forget(tx, oldest)
         audit.forget(tx, now - timedelta(days=settings.audit_days))
         sign_ins.forget(tx, now)
 
@@ -52,6 +53,7 @@ async def run(context: Context) -> None:
         tasks.start_soon(_every, GAP_INTERVAL, ingest.close_gaps, context)
         tasks.start_soon(_every, TIDY_INTERVAL, tidy, context)
         tasks.start_soon(_every, USES_INTERVAL, write_uses, context)
+        tasks.start_soon(webhooks_dispatch.run, context)
 
 
 async def _every(seconds: float, work: Callable[[Context], None], context: Context) -> None:

@@ -1,11 +1,11 @@
-"""What the live stream is told, written in the transaction it tells about."""
+"""What the live stream and webhooks are told, written in the transaction it tells about."""
 
 from datetime import datetime
 from typing import Literal
 
 import core
 from api import schemas
-from api.services import presenting
+from api.services import presenting, webhooks_queue
 from storage import alerts, devices, events, installations, mounts
 from storage.database import ReadSession, WriteSession
 
@@ -32,10 +32,11 @@ def installation_touched(
 
 
 def alert_changed(tx: WriteSession, pk: int, now: datetime) -> None:
-    """Tell how an alert stands."""
+    """Tell how an alert stands, to the live stream and to webhooks."""
     row = alerts.find(tx, pk)
     if row is not None:
         events.add(tx, row.device_id, "alert", presenting.alert(row).model_dump_json(), now)
+        webhooks_queue.alert_changed(tx, row, now)
 
 
 def device_changed(

@@ -80,6 +80,9 @@ def _deliveries() -> None:
         sa.Column("last_status", sa.Integer(), nullable=True),
         sa.Column("last_error", sa.Text(), nullable=True),
         sa.Column("duration_ms", sa.Integer(), nullable=True),
+        sa.Column("give_up_at", sa.BigInteger(), nullable=False),
+        sa.Column("claims", sa.Integer(), nullable=False),
+        sa.Column("claimed_until", sa.BigInteger(), nullable=True),
         sa.ForeignKeyConstraint(
             ["webhook_pk"], ["webhooks.pk"], name="fk_webhook_deliveries_webhook_pk", ondelete="CASCADE"
         ),
@@ -88,9 +91,15 @@ def _deliveries() -> None:
         sqlite_autoincrement=True,
     )
     op.create_index("ix_webhook_deliveries_webhook_pk_pk", "webhook_deliveries", ["webhook_pk", "pk"], unique=False)
-    op.create_index(
-        "ix_webhook_deliveries_state_next_attempt_at", "webhook_deliveries", ["state", "next_attempt_at"], unique=False
-    )
+    pending = sa.text("state = 'pending'")
+    for name, columns in (
+        ("ix_webhook_deliveries_pending", ["webhook_pk", "device_id", "pk"]),
+        ("ix_webhook_deliveries_due", ["webhook_pk", "next_attempt_at", "pk"]),
+    ):
+        op.create_index(
+            name, "webhook_deliveries", columns, unique=False, sqlite_where=pending, postgresql_where=pending
+        )
+    op.create_index("ix_webhook_deliveries_created_at", "webhook_deliveries", ["created_at"], unique=False)
 
 
 def _audit() -> None:

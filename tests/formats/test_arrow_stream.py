@@ -104,3 +104,18 @@ def test_damaged_streams_are_refused_or_read() -> None:
             assert read(bytes(body)).rows <= 3
         except FormatError as error:
             assert error.problems or error.status == 413  # noqa: PT017 either outcome is right, another exception is not
+
+
+def test_a_fix_without_a_position_names_the_column_that_is_not_there() -> None:
+    empty = pa.array([None] * 3, pa.float64())
+    places = {"lat": empty, "lon": empty}
+    columns = {name: column for name, column in COLUMNS.items() if name not in {"speed", "course"}}
+    with pytest.raises(FormatError) as caught:
+        read(stream(columns | places))
+    assert caught.value.problems[0].column == "speed"
+
+
+def test_names_cannot_begin_a_line_of_a_log() -> None:
+    with pytest.raises(FormatError) as caught:
+        read(stream(COLUMNS | {"x\nforged": ["a", "b", "c"]}))
+    assert str(caught.value).isprintable()

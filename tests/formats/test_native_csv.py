@@ -285,6 +285,42 @@ def test_the_quick_and_the_patient_reader_agree(rows: list[tuple[str, str, str]]
         np.testing.assert_array_equal(values, patient[name])
 
 
+NUMBERS = st.one_of(
+    st.floats(allow_nan=False, allow_infinity=False).map(repr),
+    st.from_regex(r"[+-]?[0-9]{1,20}(\.[0-9]{0,20})?", fullmatch=True),
+    st.from_regex(r"-?[0-9]{0,3}\.[0-9]{1,6}", fullmatch=True),
+    st.from_regex(r"[+-]?[0-9]{1,18}(\.[0-9]{0,9})?[eE][+-]?[0-9]{1,12}", fullmatch=True),
+    st.sampled_from(["0e999999999999", "-0.0", "9007199254740993", "1e22", "1e23", "5e-324", "0" * 30 + "1.5"]),
+)
+
+
+@settings(max_examples=500)
+@given(st.lists(NUMBERS, min_size=1, max_size=8), st.sampled_from(["\n", "\r\n", "\r"]), st.booleans())
+def test_compiled_numbers_are_those_of_python_to_the_last_bit(cells: list[str], end: str, ended: bool) -> None:
+    content = end.join(["a,b", *(f"{cell}," for cell in cells)]).encode() + (end.encode() if ended else b"")
+    columns = DelimitedText(content, ("a", "b"), ",", header_lines=1)._compiled(("b", "a"))
+    assert columns is not None
+    assert columns["a"].tobytes() == np.array([float(cell) for cell in cells]).tobytes()
+    assert np.isnan(columns["b"]).all()
+    assert columns["b"].size == len(cells)
+
+
+@settings(max_examples=500)
+@given(st.text('01.,-+eE \n\r"nax;', max_size=60))
+def test_what_the_compiled_reader_reads_the_patient_one_reads_too(rows: str) -> None:
+    text = DelimitedText(f"a,b\n{rows}".encode(), ("a", "b"), ",", header_lines=1)
+    columns = text._compiled(("b",))
+    if columns is not None:
+        assert columns["b"].tobytes() == text._patient(("b",))["b"].tobytes()
+
+
+def test_numbers_with_more_digits_than_a_double_are_few_or_read_otherwise() -> None:
+    rows = [f"{n}.0123456789012345678" for n in range(9000)]
+    text = DelimitedText("\n".join(["a", *rows]).encode(), ("a",), ",", header_lines=1)
+    assert text._compiled(("a",)) is None
+    assert text.columns(("a",))["a"].tolist() == [float(row) for row in rows]
+
+
 @settings(max_examples=300)
 @given(
     st.binary(max_size=200),
@@ -302,3 +338,15 @@ def test_a_good_log_with_any_bytes_written_over_it_is_read_or_refused(place: int
     body[place : place + len(damage)] = damage
     with suppress(FormatError):  # and nothing else
         assert len(read(bytes(body)).samples().samples)
+
+
+def test_a_fix_without_a_position_names_the_column_that_is_not_there() -> None:
+    found = problem("t,ax,ay,az,fix,lat,lon\n0,0,0,9.8,1,,\n")
+    assert (found.line, found.column) == (2, "speed")
+    assert "an empty cell" in found.message
+
+
+def test_names_cannot_steer_a_terminal_or_begin_a_line() -> None:
+    (notice,) = read("t,ax,ay,az,fix,speed,course,\x1b[31m\n0,0,0,9.8,1,3,90,\n").notices
+    assert notice.isprintable()
+    assert "\\x1b[31m" in notice

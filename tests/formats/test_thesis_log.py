@@ -1,5 +1,7 @@
 import json
 import math
+import subprocess
+import sys
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -267,3 +269,25 @@ def test_time_running_backwards() -> None:
 def test_an_unknown_sense_is_refused() -> None:
     with pytest.raises(FormatError, match="course='left'"):
         read(LINE, "left")
+
+
+READ_ALL = """
+from api.formats import parse
+from api.formats.errors import FormatError
+import sys
+try:
+    parse(sys.stdin.buffer.read(), "text/vnd.livella.tmd2", None).samples()
+except FormatError:
+    pass
+"""
+CLOCK_TOO_COARSE = f"1\t0\t7.64\t5.1\t24\t0\t9\t1\t1\t2\t100\n2\t1{'3' * 45}\t6\t1\t4\t1\t91\t1\t1\t2\t1"
+INTERVAL_TOO_SHORT = "".join(
+    f"{n}\t{n * 1e-4:.7f}\t7.{min(n, 5)}\t45\t240\t{40 if n < 5 else 1}\t90\t1\t1\t2\t100\n" for n in range(9)
+)
+
+
+@pytest.mark.parametrize("text", [CLOCK_TOO_COARSE, INTERVAL_TOO_SHORT])
+def test_an_interval_the_clock_cannot_tell_comes_to_an_end(text: str) -> None:
+    """In a process of its own, which can be ended when it does not end by itself."""
+    ended = subprocess.run([sys.executable, "-c", READ_ALL], input=text.encode(), timeout=60, check=False)
+    assert ended.returncode == 0

@@ -1,0 +1,71 @@
+"""The estimator's work on a chunk, done before the lock.
+
+On SQLite everybody who writes waits for everybody else, and advancing the estimator takes longer than all statements of
+an upload. It is a pure function, so it is computed on what is read beforehand; the transaction uses the result if it
+finds the same state there, and computes anew if another upload came between.
+"""
+
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import core
+from api.formats import ParsedLog
+from api.formats.log import Reading
+from api.services.context import Context
+from storage import devices, installations, sessions
+
+Correction = dict[str, Any] | None
+"""Calibration of a device's accelerometer, as it is stored."""
+
+
+class Foresight(NamedTuple):
+    """What a chunk does to a state."""
+
+    session_context: dict[str, Any] | None
+    reading: Reading
+    before: bytes
+    """snapshot of the state"""
+    correction: Correction
+    state: core.State
+    outcome: core.Outcome
+
+    def holds(self, reading: Reading, state: core.State, correction: Correction) -> bool:
+        """Tell whether this is what `advance` would give."""
+        return reading is self.reading and correction == self.correction and core.encode(state) == self.before
+
+
+def foresee(context: Context, device_id: str, session: str, seq: int, parsed: ParsedLog) -> Foresight | None:
+    """Advance a device's estimator by the next chunk of a session; None when that is not worth it or cannot be done."""
+    if not context.database.is_sqlite:
+        return None  # PostgreSQL locks a single device
+    with context.database.read() as tx:
+        row = installations.find(tx, device_id)
+        if row is None:
+            return None
+        found = sessions.find(tx, row.device_pk, session)
+        correction = devices.accelerometer_calibration(tx, row.device_pk)
+    if seq != (0 if found is None else found.next_seq):
+        return None
+    try:
+        state = core.initial_state(context.params) if row.snapshot is None else core.decode(row.snapshot)
+        if found is None or row.session_pk != found.pk:
+            state = core.begin_session(context.params, state)
+        session_context = None if found is None else found.context
+        reading = parsed.samples(session_context)
+        after, outcome = advance(context.params, correction, state, reading.samples)
+    except (core.SnapshotError, core.SampleError):
+        return None  # the transaction says what is wrong
+    return Foresight(session_context, reading, core.encode(state), correction, after, outcome)
+
+
+def advance(
+    params: core.Parameters, correction: Correction, state: core.State, samples: core.Samples
+) -> tuple[core.State, core.Outcome]:
+    """Advance by samples, less the accelerometer's errors where they are known; what is left of its bias is small."""
+    if correction is None:
+        return core.advance(params, state, samples)
+    calibration = core.AccelerometerCalibration(np.array(correction["gain"]), np.array(correction["offset"]))
+    corrected = replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))
+    return core.advance(core.calibrated(params), state, corrected)
