@@ -67,6 +67,35 @@ def test_what_is_done_with_keys_and_sign_ins_is_told(api: Api, client: TestClien
     assert (refused["role"], refused["key_id"], refused["detail"]) == ("none", None, {"address": "testclient"})
 
 
+def test_what_is_done_with_webhooks_is_told_without_secrets(api: Api, clock: Clock) -> None:
+    max_ = api.as_(api.post("/keys", {"role": "manager", "name": "Max"}, 201)["key"])
+    hook = {"name": "Desk", "url": "https://203.0.114.1:8443/hook/TOKEN?key=TOKEN"}
+    api.post("/webhooks", hook | {"url": "https://127.0.0.1/"}, 422)  # what is refused has not been done
+    made = max_.post("/webhooks", hook, 201)
+    path = f"/webhooks/{made['webhook']['id']}"
+    max_.call("PATCH", path, 200, json={"url": "https://203.0.114.1/TOKEN", "active": False})
+    max_.call("PATCH", path, 200, json={"kinds": ["gps_lost"]})
+    rotated = max_.post(f"{path}/secret")
+    max_.post(f"{path}/redeliver")
+    max_.call("DELETE", path, 204)
+    max_.call("DELETE", path, 404)
+    _, *entries = trail(api)
+    assert [(entry["action"], entry["detail"]) for entry in entries] == [
+        (
+            "webhook.create",
+            {"name": "Desk", "url": "https://203.0.114.1:8443", "kinds": None, "severities": None, "active": True},
+        ),
+        ("webhook.edit", {"url": "https://203.0.114.1", "active": False}),
+        ("webhook.edit", {"kinds": ["gps_lost"]}),
+        ("webhook.rotate_secret", None),
+        ("webhook.redeliver", {"deliveries": 0}),
+        ("webhook.remove", None),
+    ]
+    assert {(entry["actor"], entry["role"], entry["target"]) for entry in entries} == {("Max", "manager", path[1:])}
+    whole = str(trail(api))
+    assert not any(secret in whole for secret in ("TOKEN", made["secret"], rotated["secret"]))
+
+
 def test_what_is_done_about_alerts_is_told(api: Api) -> None:
     story = remounted()
     api.add_device("moved").send_all(story.chunks[: story.moved + 1])

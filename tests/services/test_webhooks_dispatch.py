@@ -13,6 +13,7 @@ from standardwebhooks import Webhook as Library
 
 from api import schemas
 from api.services import fleet, housekeeping, publishing, webhooks, webhooks_queue
+from api.services.auditing import SERVICE
 from api.services.context import Context
 from api.services.webhooks_dispatch import CLAIM, Dispatcher
 from api.services.webhooks_sending import Sender, wait_asked_for
@@ -50,7 +51,7 @@ class World:
         self.context = context
         self.sender = sender
         self.clock = clock
-        made = webhooks.add(context, schemas.WebhookDraft(name="a", url=url), "tests")
+        made = webhooks.add(context, SERVICE, schemas.WebhookDraft(name="a", url=url))
         self.pk, self.secret = made.webhook.id, made.secret
         self.numbers: dict[str, int] = {}
 
@@ -133,11 +134,11 @@ def test_nothing_is_stored_for_an_alert_that_is_rolled_back(world: World) -> Non
 
 
 def test_only_wanted_alerts_are_told(world: World) -> None:
-    webhooks.edit(world.context, world.pk, {"kinds": ["gps_lost"], "severities": ["warning", "critical"]})
+    webhooks.edit(world.context, SERVICE, world.pk, {"kinds": ["gps_lost"], "severities": ["warning", "critical"]})
     world.alert("box-1", "gps_lost", "info")
     world.alert("box-1", "device_loose", "critical")
     world.alert("box-2", "gps_lost", "warning")
-    webhooks.edit(world.context, world.pk, {"active": False})
+    webhooks.edit(world.context, SERVICE, world.pk, {"active": False})
     world.alert("box-2", "gps_lost", "warning")
     assert [delivery.device_id for delivery in world.deliveries()] == ["box-2"]
 
@@ -187,7 +188,7 @@ def test_what_was_given_up_can_be_sent_again(world: World, receiver: Receiver) -
     assert [delivery.state for delivery in world.deliveries()] == ["failed", "failed"]
     receiver.answer = Answer()
     receiver.calls.clear()
-    assert webhooks.redeliver(world.context, world.pk).deliveries == 2
+    assert webhooks.redeliver(world.context, SERVICE, world.pk).deliveries == 2
     assert world.dispatch() == 2
     assert [call.json["data"]["count"] for call in receiver.calls] == [1, 2]
     assert world.webhook().failing_since is None
@@ -299,7 +300,7 @@ def test_gone_switches_off(world: World, receiver: Receiver) -> None:
     assert not world.webhook().active
     assert [delivery.state for delivery in world.deliveries()] == ["failed", "pending"]
     receiver.answer = Answer()
-    webhooks.edit(world.context, world.pk, {"active": True})
+    webhooks.edit(world.context, SERVICE, world.pk, {"active": True})
     assert world.dispatch() == 1
 
 
@@ -352,14 +353,14 @@ def test_what_still_waits_is_not_removed_however_old(world: World, receiver: Rec
     world.clock.advance(91 * DAY)
     housekeeping.tidy(world.context)
     receiver.answer = Answer()
-    webhooks.edit(world.context, world.pk, {"active": True})
+    webhooks.edit(world.context, SERVICE, world.pk, {"active": True})
     assert world.dispatch() == 1
     assert [delivery.state for delivery in world.deliveries()] == ["delivered"]
 
 
 def test_a_removed_webhook_takes_its_deliveries_along(world: World) -> None:
     world.alert("box-1")
-    webhooks.remove(world.context, world.pk)
+    webhooks.remove(world.context, SERVICE, world.pk)
     assert world.dispatch() == 0
     world.alert("box-1")
     with world.context.database.read() as tx:
