@@ -1,6 +1,7 @@
 """Every kind of alert that is raised by a rule: a log raises it, and a log ends it."""
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from datetime import datetime, timedelta
 
 import pytest
@@ -146,6 +147,19 @@ def test_silent_devices_are_found_in_batches(
     assert len(alerts(api, "device_silent")) == 5
     with database.read() as tx:
         assert installations.silent(tx, "device_silent", clock.now, 0, 10) == []
+
+
+def test_several_processes_may_look_for_silent_devices_at_once(
+    api: Api, clock: Clock, context: Context, database: Database
+) -> None:
+    for n in range(8):
+        api.add_device(f"box-{n}")
+    with database.write() as tx:
+        tx.execute(sa.update(tables.installations).values(last_data_at=clock.now))
+    clock.advance(100 * 3600)
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(watching.find_silent, [context] * 4))
+    assert [alert["count"] for alert in alerts(api, "device_silent")] == [1] * 8
 
 
 def test_clock_fault_when_it_runs_back(player: Player, api: Api) -> None:
