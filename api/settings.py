@@ -64,6 +64,24 @@ class Settings(BaseSettings):
         description="Days the angle history, the receipts of chunks and the deliveries of webhooks are kept; "
         "mountings are kept for ever.",
     )
+    alert_stalled_minutes: float = Field(
+        30.0, gt=0, description="Minutes of driving without a confirmed mounting that raise `calibration_stalled`."
+    )
+    alert_failed_tests: int = Field(
+        4, ge=1, le=1000, description="Failed drive tests in a row that raise `verification_failing`."
+    )
+    alert_gps_lost_minutes: float = Field(
+        30.0, gt=0, description="Minutes of data without a GPS fix that raise `gps_lost`."
+    )
+    alert_silent_hours: float = Field(
+        72.0, ge=0.1, le=87600, description="Hours without data that raise `device_silent`."
+    )
+    alert_reopen_minutes: float = Field(
+        60.0,
+        ge=0,
+        le=525600,
+        description="Minutes after an alert was over by itself in which a recurrence opens it again.",
+    )
     stream_minutes: float = Field(
         15.0, gt=0, description="Minutes a live stream that was cut off can be resumed without a gap."
     )

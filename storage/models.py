@@ -205,6 +205,7 @@ alerts = sa.Table(
     sa.Column("resolved_at", Instant),
     sa.Column("resolved_by", NAME),
     sa.Column("resolve_note", sa.Text),
+    sa.Column("resolved_automatically", sa.Boolean),
     sa.Index("ix_alerts_device_pk_pk", "device_pk", "pk"),
     sa.Index("ix_alerts_state_pk", "state", "pk"),
     sqlite_autoincrement=True,

@@ -1,6 +1,6 @@
 """The installation of a device: where it stands, its history, its mountings."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Query, Response
 from pydantic import AwareDatetime
@@ -16,10 +16,17 @@ router = APIRouter(prefix="/devices/{device_id}", tags=["installation"])
 Number = Annotated[int, Path(ge=1, le=2**31 - 1, description="Number of the mounting, from 1.")]
 
 
-@router.get("/installation")
-def read_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
+IfNoneMatch = Annotated[str | None, Header()]
+
+
+@router.get("/installation", responses={304: {"description": "Not modified: nothing has changed since the ETag"}})
+def read_installation(
+    device_id: AnyDevice, context: CurrentContext, response: Response, if_none_match: IfNoneMatch = None
+) -> schemas.Installation:
     """Tell where the installation stands and what is missing."""
-    return fleet.read_installation(context, device_id)
+    tag, shown = fleet.read_installation(context, device_id, _tags(if_none_match))
+    response.headers.update(_caching(tag))
+    return _not_modified(tag) if shown is None else shown
 
 
 @router.post("/installation/restart")
@@ -73,16 +80,22 @@ def read_current_mount(
     device_id: AnyDevice,
     context: CurrentContext,
     response: Response,
-    if_none_match: Annotated[str | None, Header()] = None,
+    if_none_match: IfNoneMatch = None,
 ) -> schemas.Mount:
     """Give the mounting in force; still readable, and marked, when it is suspect."""
     with context.database.read() as tx:
         row = _found(mounts.current(tx, fleet.number(tx, device_id)), "No mounting is confirmed yet.")
     tag = f'"{row.n}-{row.status}"'
-    response.headers.update({"ETag": tag, "Cache-Control": "no-cache"})
-    if tag in _tags(if_none_match):
-        return Response(status_code=304, headers=dict(response.headers))  # type: ignore[return-value]
-    return presenting.mount(row)
+    response.headers.update(_caching(tag))
+    return _not_modified(tag) if tag in _tags(if_none_match) else presenting.mount(row)
+
+
+def _caching(tag: str) -> dict[str, str]:
+    return {"ETag": tag, "Cache-Control": "no-cache"}
+
+
+def _not_modified(tag: str) -> Any:
+    return Response(status_code=304, headers=_caching(tag))
 
 
 def _tags(if_none_match: str | None) -> list[str]:

@@ -1,6 +1,7 @@
 """Devices: register, list, edit, remove; the counts over all of them."""
 
 import secrets
+from collections.abc import Collection
 from datetime import datetime
 from typing import Any
 
@@ -115,13 +116,16 @@ def number(tx: ReadSession, device_id: str) -> int:
     return pk
 
 
-def read_installation(context: Context, device_id: str) -> schemas.Installation:
-    """Give the installation of a device."""
+def read_installation(
+    context: Context, device_id: str, known: Collection[str] = ()
+) -> tuple[str, schemas.Installation | None]:
+    """Give the tag and the installation of a device; None when its tag is one of those that are known."""
     with context.database.read() as tx:
         row = installations.find(tx, device_id)
         if row is None:
             raise NotFoundError(UNKNOWN_DEVICE)
-        return publishing.show(tx, row, device_id, context.params)
+        tag = f'"{row.device_pk}-{row.revision}"'
+        return tag, None if tag in known else publishing.show(tx, row, device_id, context.params)
 
 
 def restart(context: Context, device_id: str, principal: Principal) -> schemas.Installation:

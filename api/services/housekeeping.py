@@ -1,4 +1,7 @@
-"""What is done now and then: gaps declared lost, old rows removed. Any number of processes may do it at once."""
+"""What is done now and then: gaps declared lost, silent devices found, old rows removed.
+
+Any number of processes may do it at once.
+"""
 
 import logging
 from collections.abc import Callable
@@ -7,7 +10,7 @@ from datetime import timedelta
 import anyio
 from anyio import to_thread
 
-from api.services import ingest, webhooks_dispatch
+from api.services import ingest, watching, webhooks_dispatch
 from api.services.context import Context
 from storage import audit, chunks, deliveries, estimates, events, sign_ins
 
@@ -15,6 +18,8 @@ log = logging.getLogger(__name__)
 
 GAP_INTERVAL = 5.0
 """s between two looks for gaps that have been open too long"""
+SILENT_INTERVAL = 60.0
+"""s between two looks for devices that send nothing"""
 TIDY_INTERVAL = 300.0
 """s between two removals of old rows"""
 USES_INTERVAL = 60.0
@@ -51,6 +56,7 @@ async def run(context: Context) -> None:
     """Keep house until cancelled."""
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(_every, GAP_INTERVAL, ingest.close_gaps, context)
+        tasks.start_soon(_every, SILENT_INTERVAL, watching.find_silent, context)
         tasks.start_soon(_every, TIDY_INTERVAL, tidy, context)
         tasks.start_soon(_every, USES_INTERVAL, write_uses, context)
         tasks.start_soon(webhooks_dispatch.run, context)

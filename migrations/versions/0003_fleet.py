@@ -17,6 +17,7 @@ ADDED = (
     ("api_keys", "expires_at", sa.BigInteger()),
     ("api_keys", "created_by", sa.String(128)),
     ("installations", "watch", sa.JSON(none_as_null=True)),
+    ("alerts", "resolved_automatically", sa.Boolean()),
 )
 INDEXES = (
     ("ix_alerts_state_pk", "alerts", ["state", "pk"]),

@@ -5,6 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from pydantic import SecretStr
@@ -12,7 +13,7 @@ from sqlalchemy.dialects import sqlite
 from standardwebhooks import Webhook as Library
 
 from api import schemas
-from api.services import fleet, housekeeping, publishing, webhooks, webhooks_queue
+from api.services import alerting, fleet, housekeeping, publishing, webhooks, webhooks_queue
 from api.services.auditing import SERVICE
 from api.services.context import Context
 from api.services.webhooks_dispatch import CLAIM, Dispatcher
@@ -159,6 +160,32 @@ def test_every_change_has_its_type(world: World, receiver: Receiver) -> None:
     world.dispatch()
     expected = ["opened", "updated", "acknowledged", "updated", "resolved"]
     assert [call.json["type"] for call in receiver.calls] == [f"alert.{word}" for word in expected]
+
+
+def test_an_alert_that_is_opened_again_is_told_as_opened(world: World, receiver: Receiver) -> None:
+    finding, device = Finding("gps_lost", "warning", "No GPS.", {}), world.numbers["box-1"]
+    for step in ("raise", "raise", "end", "raise", "raise", "end"):
+        world.clock.advance(60)
+        with world.context.database.write() as tx:
+            if step == "raise":
+                alerting.raise_(tx, world.context, device, finding, world.clock())
+            else:
+                alerting.end(tx, device, [finding.kind], "There is GPS again.", world.clock())
+    world.dispatch()
+    expected = ["opened", "updated", "resolved", "opened", "updated", "resolved"]
+    assert [call.json["type"] for call in receiver.calls] == [f"alert.{word}" for word in expected]
+    assert [call.json["data"]["count"] for call in receiver.calls] == [1, 2, 2, 3, 4, 4]
+    assert len({call.json["data"]["id"] for call in receiver.calls}) == 1
+
+
+@pytest.mark.parametrize("kind", get_args(schemas.AlertKind))
+def test_every_kind_reaches_webhooks(world: World, receiver: Receiver, kind: str) -> None:
+    with world.context.database.write() as tx:
+        finding = Finding(kind, "warning", "It is so.", {})
+        alerting.raise_(tx, world.context, world.numbers["box-1"], finding, world.clock())
+    world.dispatch()
+    (call,) = receiver.calls
+    assert (call.json["type"], call.json["data"]["kind"]) == ("alert.opened", kind)
 
 
 def test_the_schedule_of_standard_webhooks_then_given_up(world: World, receiver: Receiver) -> None:
