@@ -17,13 +17,14 @@ from anyio import to_thread
 from fastapi import FastAPI
 from starlette.middleware.gzip import GZipMiddleware
 
-from api import errors, headers, metrics, page, tracing
+from api import errors, headers, metrics, page, rates, tracing
 from api.live import Hub
 from api.observing import Observing
 from api.overload import Gate, Limits
 from api.routes import api, service
 from api.services import housekeeping, startup
 from api.services.context import Context, utc_now
+from api.services.limiting import Rates
 from api.settings import Settings
 
 log = logging.getLogger(__name__)
@@ -40,17 +41,19 @@ class State(TypedDict):
     ready: threading.Event
     gate: Gate
     watch: service.Watch
+    rates: Rates
 
 
 def create_app(settings: Settings | None = None, clock: Callable[[], datetime] = utc_now) -> FastAPI:
     """Make the application; settings come from the environment unless given."""
     chosen = settings or Settings()
     gate = Gate(chosen)
+    allowed = Rates(chosen)
     app = FastAPI(
         title="Livella",
         version=version("livella"),
         description="Automatic mounting-angle calibration for vehicle black boxes.",
-        lifespan=lambda _: _lifespan(chosen, clock, gate),
+        lifespan=lambda _: _lifespan(chosen, clock, gate, allowed),
         docs_url=None,
         redoc_url=None,
         responses=errors.RESPONSES,
@@ -61,6 +64,7 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
     app.include_router(api)
     app.router.default = GZipMiddleware(page.Page(app.router.default, page.STATIC))
     app.add_middleware(Limits, gate=gate)
+    app.add_middleware(rates.RateHeaders, rates=allowed)
     app.add_middleware(headers.SecurityHeaders)
     app.add_middleware(Observing)
     _describe(app)
@@ -78,7 +82,9 @@ def _describe(app: FastAPI) -> None:
 
 
 @asynccontextmanager
-async def _lifespan(settings: Settings, clock: Callable[[], datetime], gate: Gate) -> AsyncIterator[State]:
+async def _lifespan(
+    settings: Settings, clock: Callable[[], datetime], gate: Gate, rates: Rates
+) -> AsyncIterator[State]:
     metrics.forget_dead_processes()
     context = Context.make(settings, clock)
     hub = Hub(context.database)
@@ -93,9 +99,10 @@ async def _lifespan(settings: Settings, clock: Callable[[], datetime], gate: Gat
         tasks.start_soon(hub.run)
         tasks.start_soon(housekeeping.run, context)
         with _ending_with(hub.close):
-            yield State(context=context, hub=hub, ready=ready, gate=gate, watch=service.Watch(context))
+            yield State(context=context, hub=hub, ready=ready, gate=gate, watch=service.Watch(context), rates=rates)
         hub.close()
         tasks.cancel_scope.cancel()  # threads at work are waited for
+    await to_thread.run_sync(housekeeping.finish, context)
     context.database.close()
 
 

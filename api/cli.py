@@ -168,13 +168,16 @@ def keys_create(
     device: Annotated[
         str | None, typer.Option(help="With the role device: the device it is for.", show_default=False)
     ] = None,
+    expires_days: Annotated[
+        float | None, typer.Option(min=0.001, max=36500, help="Days until it ends; if not given, when it is revoked.")
+    ] = None,
     database_url: DatabaseUrl = None,
     data_dir: DataDir = None,
 ) -> None:
     """Make a key and print it, once."""
     from api.commands import keys as command
 
-    command.create({"database_url": database_url, "data_dir": data_dir}, role, name, device)
+    command.create({"database_url": database_url, "data_dir": data_dir}, role, name, device, expires_days)
 
 
 @keys.command("revoke")

@@ -8,13 +8,15 @@ from urllib.parse import urlsplit
 from fastapi import Depends, Query, Request, Security
 from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
 
+from api import rates
 from api.live import Hub
 from api.schemas import DEVICE_ID
-from api.services import access, paging
+from api.services import access, limiting, paging, sign_ins
 from api.services.access import Principal, Role
 from api.services.context import Context
 from api.services.errors import ForbiddenError, NotFoundError, StartingError, TooLargeError, UnauthenticatedError
 from api.services.fleet import UNKNOWN_DEVICE
+from api.services.limiting import Rates
 
 COOKIE = "livella_session"
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -35,8 +37,15 @@ async def get_hub(request: Request) -> Hub:
     return hub
 
 
+def get_rates(request: Request) -> Rates:
+    """Give what counts the calls."""
+    counted: Rates = request.state.rates
+    return counted
+
+
 CurrentContext = Annotated[Context, Depends(get_context)]
 CurrentHub = Annotated[Hub, Depends(get_hub)]
+CurrentRates = Annotated[Rates, Depends(get_rates)]
 
 
 def get_principal(
@@ -45,14 +54,40 @@ def get_principal(
     bearer: Annotated[HTTPAuthorizationCredentials | None, Security(_bearer)],
     cookie: Annotated[str | None, Security(_cookie)],
 ) -> Principal:
-    """Tell who is calling: by key, or by the cookie of the page."""
+    """Tell who is calling, by key or by the cookie of the page, and whether they call too often."""
+    return charged(request, _identify(request, context, bearer, cookie))
+
+
+def _identify(
+    request: Request, context: Context, bearer: HTTPAuthorizationCredentials | None, cookie: str | None
+) -> Principal:
     if bearer is not None:
-        return access.authenticate(context, bearer.credentials)
+        return by_key(request, context, bearer.credentials)
     if cookie is None:
         raise UnauthenticatedError("Send a key as `Authorization: Bearer KEY`, or sign in.")
     if request.method not in SAFE_METHODS and not is_same_origin(request):
         raise ForbiddenError("A request with the page's sign-in has to come from the page itself.")
-    return access.recognise(context, cookie)
+    return sign_ins.recognise(context, cookie)
+
+
+def by_key(request: Request, context: Context, key: str) -> Principal:
+    """Tell whose key this is, unless its sender has tried too many that are none."""
+    counted, address = get_rates(request), rates.address(request)
+    counted.admit(address, key)
+    try:
+        return access.authenticate(context, key)
+    except UnauthenticatedError:
+        counted.failed(address)
+        raise
+
+
+def charged(request: Request, principal: Principal) -> Principal:
+    """Count a call, and refuse it when it is one too many."""
+    standing, is_allowed = get_rates(request).charge(principal)
+    setattr(request.state, rates.STANDING, standing)
+    if not is_allowed:
+        raise limiting.too_many(standing)
+    return principal
 
 
 def is_same_origin(request: Request) -> bool:

@@ -32,6 +32,8 @@ STATUS: dict[type[errors.ServiceError], HTTPStatus] = {
     errors.UnusableError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.WebhookUrlError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.CursorError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    errors.ExpiryError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    errors.TooManyRequestsError: HTTPStatus.TOO_MANY_REQUESTS,
     errors.TooLargeError: HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
     errors.StartingError: HTTPStatus.SERVICE_UNAVAILABLE,
 }
@@ -66,7 +68,8 @@ def problem(
 
 def _service_error(_: Request, error: errors.ServiceError) -> JSONResponse:
     status = next(STATUS[family] for family in type(error).__mro__ if family in STATUS)
-    return problem(status, error.title, error.detail, error.kind)
+    headers = {"Retry-After": str(error.retry_after)} if isinstance(error, errors.TooManyRequestsError) else None
+    return problem(status, error.title, error.detail, error.kind, headers=headers)
 
 
 def _format_error(_: Request, error: FormatError) -> JSONResponse:

@@ -4,7 +4,7 @@ from datetime import datetime
 from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, StringConstraints, model_validator
 
 import core
 
@@ -383,6 +383,55 @@ class FleetSummary(Document):
     stages: dict[StageName, int]
     open_alerts: int
     alerts: dict[AlertKind, dict[Severity, int]] = Field(description="Open alerts by kind and severity.")
+
+
+class KeyDraft(Document):
+    """A key to make."""
+
+    role: Role
+    name: Name
+    device_id: DeviceId | None = Field(None, description="Only with the role device: the device the key is for.")
+    expires_at: AwareDatetime | None = Field(None, description="When it ends; null: when it is revoked.")
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if (self.role == "device") != (self.device_id is not None):
+            raise ValueError("`device_id` goes with the role device, and with no other")
+        return self
+
+
+class Key(Document):
+    """A key, without its secret, which is not stored."""
+
+    id: int
+    prefix: str | None = Field(description="How it begins; null of keys made long ago or chosen by an operator.")
+    role: Role
+    name: str
+    device_id: str | None
+    created_at: datetime
+    created_by: str | None = Field(description="Name of the key it was made with.")
+    last_used_at: datetime | None = Field(description="Some minutes behind at most.")
+    expires_at: datetime | None
+
+
+class CreatedKey(Key):
+    """A key just made, which is shown only now."""
+
+    key: str
+
+
+class AuditEntry(Document):
+    """Something somebody did."""
+
+    id: int
+    at: datetime
+    actor: str = Field(description="Name of the key it was done with, at that time.")
+    key_id: int | None
+    role: Role | Literal["none"]
+    action: str = Field(description="`resource.verb`.")
+    target: str | None = Field(description="Path of what was changed, below `/api/v1/`.")
+    detail: dict[str, Any] | None
+    request_id: str | None
 
 
 class SignIn(Document):

@@ -56,6 +56,20 @@ class Settings(BaseSettings):
         64, ge=1, le=1024, description="Chunks waiting in one session that declare the gap."
     )
     session_hours: float = Field(12.0, gt=0, le=720, description="Hours until a sign-in to the page ends.")
+    device_requests_per_minute: int = Field(
+        120, ge=1, description="Requests a minute with the key of a device, for each server process."
+    )
+    requests_per_minute: int = Field(
+        1200, ge=1, description="Requests a minute with any other key, for each server process."
+    )
+    failures_per_minute: int = Field(
+        20, ge=1, description="Requests a minute with unknown keys from one address, for each server process."
+    )
+    forwarded_allow_ips: str | None = Field(
+        None,
+        description="Proxies whose `X-Forwarded-For` and `X-Forwarded-Proto` are believed: addresses or networks "
+        "separated by commas, or `*`; unset: those of `FORWARDED_ALLOW_IPS`, else `127.0.0.1`.",
+    )
     history_days: float = Field(
         14.0, gt=0, description="Days the fine angle history is kept; then it becomes one point a minute."
     )
@@ -67,6 +81,24 @@ class Settings(BaseSettings):
     )
     delivery_days: float = Field(30.0, ge=4, description="Days the deliveries of webhooks are kept.")
     audit_days: float = Field(730.0, gt=0, description="Days the audit trail is kept.")
+    alert_stalled_minutes: float = Field(
+        30.0, gt=0, description="Minutes of driving without a confirmed mounting that raise `calibration_stalled`."
+    )
+    alert_failed_tests: int = Field(
+        4, ge=1, le=1000, description="Failed drive tests in a row that raise `verification_failing`."
+    )
+    alert_gps_lost_minutes: float = Field(
+        30.0, gt=0, description="Minutes of data without a GPS fix that raise `gps_lost`."
+    )
+    alert_silent_hours: float = Field(
+        72.0, ge=0.1, le=87600, description="Hours without data that raise `device_silent`."
+    )
+    alert_reopen_minutes: float = Field(
+        60.0,
+        ge=0,
+        le=525600,
+        description="Minutes after an alert was over by itself in which a recurrence opens it again.",
+    )
     stream_minutes: float = Field(
         15.0, gt=0, description="Minutes a live stream that was cut off can be resumed without a gap."
     )

@@ -154,7 +154,13 @@ def status(params: Parameters, state: State) -> Status:
         estimate=estimate if known else None,
         verification=_verification(params, state),
         mount=_mount(params, state),
+        faults=_going_on(state),
     )
+
+
+def _going_on(state: State) -> tuple[Fault, ...]:
+    reported = int(state.faults["reported"][0])
+    return tuple(fault for which, (fault, _) in enumerate(_FAULTS) if reported >> which & 1)
 
 
 def _row_limit(params: Parameters, samples: Samples) -> int:

@@ -171,6 +171,8 @@ class Status(NamedTuple):
     estimate: Estimate | None
     verification: Verification
     mount: Mount | None
+    faults: tuple[Fault, ...] = ()
+    """faults of the sensor that go on"""
 
 
 class Outcome(NamedTuple):

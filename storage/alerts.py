@@ -12,6 +12,14 @@ from storage.models import Instant, alert_unresolved, alerts, devices
 OPEN, ACKNOWLEDGED, RESOLVED = "open", "acknowledged", "resolved"
 SEVERITIES = ("info", "warning", "critical")
 """Mildest first."""
+REOPENED = {
+    "state": OPEN,
+    "resolved_at": None,
+    "resolved_by": None,
+    "resolve_note": None,
+    "resolved_automatically": None,
+}
+"""What changes with an alert that is opened again; who had seen it stays on record."""
 
 
 class Alert(NamedTuple):
@@ -79,6 +87,19 @@ _change = sa.update(alerts).where(alerts.c.pk == sa.bindparam("of_pk")).values(u
 _acknowledge = _change.values(acknowledged_at=_not_before)
 _resolve = _change.values(resolved_at=_not_before)
 """Times of an alert never run backwards, whatever the clock does."""
+_find_over = (
+    _select.where(
+        alerts.c.device_pk == sa.bindparam("device_pk"),
+        alerts.c.kind == sa.bindparam("kind"),
+        alerts.c.resolved_automatically,
+        alerts.c.resolved_at >= sa.bindparam("since"),
+    )
+    .order_by(alerts.c.pk.desc())
+    .limit(1)
+)
+_newest = sa.select(sa.func.max(alerts.c.pk)).where(
+    alerts.c.device_pk == sa.bindparam("device_pk"), alerts.c.kind == sa.bindparam("kind")
+)
 _counts = (
     sa.select(alerts.c.kind, alerts.c.severity, sa.func.count())
     .where(alert_unresolved)
@@ -118,20 +139,38 @@ def _pk_of(device_id: str) -> sa.ScalarSelect[int]:
     return sa.select(devices.c.pk).where(devices.c.id == device_id).correlate(None).scalar_subquery()
 
 
-def raise_(tx: WriteSession, device_pk: int, finding: Finding, now: datetime) -> int:
+def raise_(
+    tx: WriteSession, device_pk: int, finding: Finding, now: datetime, reopen_since: datetime | None = None
+) -> int:
     """Open an alert, or count it once more when one of this kind is open; give its number.
 
-    An open alert tells the latest finding, unless that is a milder one.
+    An open alert tells the latest finding, unless that is a milder one. The newest alert of the kind is opened again
+    when it is over by itself, and no longer than since `reopen_since`.
     """
     for alert in find_open(tx, device_pk, [finding.kind]):
-        milder = SEVERITIES.index(finding.severity) < SEVERITIES.index(alert.severity)
-        told = {} if milder else finding._asdict()
-        tx.execute(_change, of_pk=alert.pk, occurrences=alert.occurrences + 1, now=now, **told)
+        _count(tx, alert, finding, now)
         return alert.pk
+    over = None if reopen_since is None else _find_newest_over(tx, device_pk, finding.kind, reopen_since)
+    if over is not None:
+        _count(tx, over, finding, now, **REOPENED)
+        return over.pk
     opened = {"state": OPEN, "opened_at": now, "updated_at": now, "occurrences": 1}
     return int(
         tx.execute(_add, device_pk=device_pk, of_device_pk=device_pk, **opened, **finding._asdict()).scalar_one()
     )
+
+
+def _count(tx: WriteSession, alert: Alert, finding: Finding, now: datetime, **changes: Any) -> None:
+    milder = SEVERITIES.index(finding.severity) < SEVERITIES.index(alert.severity)
+    told = {} if milder and alert.state != RESOLVED else finding._asdict()
+    tx.execute(_change, of_pk=alert.pk, occurrences=alert.occurrences + 1, now=now, **told, **changes)
+
+
+def _find_newest_over(tx: ReadSession, device_pk: int, kind: str, since: datetime) -> Alert | None:
+    """Give the newest alert of a kind, if it is over by itself since a moment."""
+    over = tx.one(Alert, _find_over, device_pk=device_pk, kind=kind, since=since)
+    newest = tx.value(_newest, device_pk=device_pk, kind=kind)
+    return over if over is not None and over.pk == newest else None
 
 
 def acknowledge(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime) -> None:
@@ -140,9 +179,9 @@ def acknowledge(tx: WriteSession, pk: int, by: str, note: str | None, now: datet
     tx.execute(_acknowledge, of_pk=pk, now=now, **values)
 
 
-def resolve(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime) -> None:
-    """It is over."""
-    values = {"state": RESOLVED, "resolved_by": by, "resolve_note": note}
+def resolve(tx: WriteSession, pk: int, by: str, note: str | None, now: datetime, automatically: bool = False) -> None:
+    """It is over: by itself when `automatically`, else somebody says so."""
+    values = {"state": RESOLVED, "resolved_by": by, "resolve_note": note, "resolved_automatically": automatically}
     tx.execute(_resolve, of_pk=pk, now=now, **values)
 
 

@@ -27,6 +27,8 @@ class Installation(NamedTuple):
     status: dict[str, Any]
     last_data_at: datetime | None
     revision: int
+    watch: dict[str, Any] | None = None
+    """what the rules of alerts remember, see `api/services/rules`"""
 
 
 class Beside(NamedTuple):
@@ -49,6 +51,23 @@ _beside = sa.select(
 _add = sa.insert(installations).values(device_id=_device_id)
 _save = sa.update(installations).where(installations.c.device_pk == sa.bindparam("of_device_pk"))
 _touch = _save.values(revision=installations.c.revision + 1)
+_remember = _save.values(watch=sa.bindparam("of_watch", type_=installations.c.watch.type))
+_told = sa.exists().where(
+    alerts.c.device_pk == installations.c.device_pk,
+    alerts.c.kind == sa.bindparam("kind"),
+    alert_unresolved | (alerts.c.opened_at > installations.c.last_data_at),
+)
+_silent = (
+    sa.select(installations.c.device_pk, devices.c.id)
+    .join_from(installations, devices)
+    .where(
+        installations.c.last_data_at < sa.bindparam("before"),
+        installations.c.device_pk > sa.bindparam("after"),
+        ~_told,
+    )
+    .order_by(installations.c.device_pk)
+    .limit(sa.bindparam("limit"))
+)
 
 
 def lock(tx: WriteSession, device_id: str) -> Installation | None:
@@ -81,6 +100,21 @@ def save(tx: WriteSession, installation: Installation) -> None:
     """Store what evolves."""
     values = installation._asdict()
     tx.execute(_save, of_device_pk=values.pop("device_pk"), **values)
+
+
+def remember(tx: WriteSession, device_pk: int, watch: dict[str, Any] | None) -> None:
+    """Store what the rules of alerts remember."""
+    tx.execute(_remember, of_device_pk=device_pk, of_watch=watch)
+
+
+def silent(tx: ReadSession, kind: str, before: datetime, after: int, limit: int) -> list[tuple[int, str]]:
+    """Give devices (number, id) whose last data came before a moment and of which no alert of this kind tells yet.
+
+    An alert tells of this silence when it is not resolved, or was opened after the last data: one that somebody
+    resolved by hand is not raised again before the device has sent and fallen silent anew.
+    """
+    values = {"kind": kind, "before": before, "after": after, "limit": limit}
+    return tx.all(lambda pk, device_id: (pk, device_id), _silent, **values)
 
 
 def touch(tx: WriteSession, device_pk: int) -> None:

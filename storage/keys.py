@@ -1,6 +1,7 @@
 """API keys. The key itself is never here, only its SHA-256."""
 
-from datetime import datetime
+from collections.abc import Mapping
+from datetime import datetime, timedelta
 from typing import NamedTuple
 
 import sqlalchemy as sa
@@ -8,9 +9,14 @@ import sqlalchemy as sa
 from storage.database import ReadSession, WriteSession
 from storage.models import api_keys, devices
 
+USE_INTERVAL = timedelta(minutes=1)
+"""A key's last use is not written again before this has passed."""
+MADE, ENVIRONMENT = "made", "environment"
+"""Where keys come from."""
+
 
 class Key(NamedTuple):
-    """A key as it is known here."""
+    """A key as far as it is needed to let somebody in."""
 
     pk: int
     digest: bytes
@@ -18,18 +24,51 @@ class Key(NamedTuple):
     name: str
     device_pk: int | None
     device_id: str | None
+    expires_at: datetime | None
 
 
-_select = sa.select(
-    api_keys.c.pk, api_keys.c.digest, api_keys.c.role, api_keys.c.name, api_keys.c.device_pk, devices.c.id
-).select_from(api_keys.outerjoin(devices))
+class Entry(NamedTuple):
+    """A key as it is listed."""
+
+    pk: int
+    prefix: str | None
+    role: str
+    name: str
+    device_id: str | None
+    created_at: datetime
+    created_by: str | None
+    last_used_at: datetime | None
+    expires_at: datetime | None
+
+
+_from = api_keys.outerjoin(devices)
+_select = sa.select(*(devices.c.id if name == "device_id" else api_keys.c[name] for name in Key._fields)).select_from(
+    _from
+)
 _by_digest = _select.where(api_keys.c.digest == sa.bindparam("digest"))
-_every = _select.order_by(api_keys.c.pk)
 _by_pk = _select.where(api_keys.c.pk == sa.bindparam("pk"))
-_of_role = sa.select(api_keys.c.pk).where(api_keys.c.role == sa.bindparam("role")).limit(1)
+_list = (
+    sa.select(*(devices.c.id if name == "device_id" else api_keys.c[name] for name in Entry._fields))
+    .select_from(_from)
+    .order_by(api_keys.c.pk)
+)
+_find = _list.where(api_keys.c.pk == sa.bindparam("pk"))
+_page = _list.where(api_keys.c.pk > sa.bindparam("after")).limit(sa.bindparam("limit"))
+_valid = sa.or_(api_keys.c.expires_at.is_(None), api_keys.c.expires_at > sa.bindparam("now"))
+_valid_of_role = sa.select(api_keys.c.pk).where(api_keys.c.role == sa.bindparam("role"), _valid).order_by(api_keys.c.pk)
+_lock_valid_of_role = _valid_of_role.with_for_update()
 _add = sa.insert(api_keys).returning(api_keys.c.pk)
 _remove = sa.delete(api_keys).where(api_keys.c.pk == sa.bindparam("pk"))
 _remove_source = sa.delete(api_keys).where(api_keys.c.source == sa.bindparam("source"))
+_remove_device = sa.delete(api_keys).where(api_keys.c.device_pk == sa.bindparam("device_pk"))
+_use = (
+    sa.update(api_keys)
+    .where(
+        api_keys.c.pk == sa.bindparam("of_pk"),
+        sa.or_(api_keys.c.last_used_at.is_(None), api_keys.c.last_used_at <= sa.bindparam("stale")),
+    )
+    .values(last_used_at=sa.bindparam("used"))
+)
 
 
 def by_digest(tx: ReadSession, digest: bytes) -> Key | None:
@@ -42,9 +81,19 @@ def by_pk(tx: ReadSession, pk: int) -> Key | None:
     return tx.one(Key, _by_pk, pk=pk)
 
 
-def every(tx: ReadSession) -> list[Key]:
+def find(tx: ReadSession, pk: int) -> Entry | None:
+    """Find a key as it is listed."""
+    return tx.one(Entry, _find, pk=pk)
+
+
+def every(tx: ReadSession) -> list[Entry]:
     """List the keys in the order in which they were made."""
-    return tx.all(Key, _every)
+    return tx.all(Entry, _list)
+
+
+def page(tx: ReadSession, limit: int, after: int | None = None) -> list[Entry]:
+    """Give up to `limit` keys in the order in which they were made, from after number `after`."""
+    return tx.all(Entry, _page, limit=limit, after=after or 0)
 
 
 def add(
@@ -54,21 +103,42 @@ def add(
     name: str,
     now: datetime,
     device_pk: int | None = None,
-    source: str = "made",
+    source: str = MADE,
+    prefix: str | None = None,
+    expires_at: datetime | None = None,
+    created_by: str | None = None,
 ) -> int:
     """Store a key; give its number."""
-    added = tx.execute(_add, digest=digest, role=role, name=name, device_pk=device_pk, source=source, created_at=now)
-    return int(added.scalar_one())
+    more = {"device_pk": device_pk, "source": source, "prefix": prefix}
+    ends = {"expires_at": expires_at, "created_by": created_by}
+    return int(tx.execute(_add, digest=digest, role=role, name=name, created_at=now, **more, **ends).scalar_one())
 
 
-def any_of_role(tx: ReadSession, role: str) -> bool:
-    """Tell whether there is a key of this role."""
-    return tx.value(_of_role, role=role) is not None
+def valid_of_role(tx: ReadSession, role: str, now: datetime) -> list[int]:
+    """Give the numbers of the keys of this role that have not expired."""
+    return tx.all(int, _valid_of_role, role=role, now=now)
+
+
+def lock_valid_of_role(tx: WriteSession, role: str, now: datetime) -> list[int]:
+    """Give the same; nobody else removes one of them before this transaction ends."""
+    return tx.all(int, _lock_valid_of_role, role=role, now=now)
+
+
+def used(tx: WriteSession, uses: Mapping[int, datetime]) -> None:
+    """Write when keys were last used, where what is written is not as new already."""
+    rows = [{"of_pk": pk, "used": at, "stale": at - USE_INTERVAL} for pk, at in sorted(uses.items())]
+    if rows:
+        tx.connection.execute(_use, rows)
 
 
 def remove_source(tx: WriteSession, source: str) -> None:
     """Revoke every key of this origin."""
     tx.execute(_remove_source, source=source)
+
+
+def remove_of_device(tx: WriteSession, device_pk: int) -> None:
+    """Revoke every key of a device."""
+    tx.execute(_remove_device, device_pk=device_pk)
 
 
 def remove(tx: WriteSession, pk: int) -> bool:

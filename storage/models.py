@@ -102,6 +102,17 @@ api_keys = sa.Table(
     sqlite_autoincrement=True,
 )
 
+sign_ins = sa.Table(
+    "sign_ins",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    sa.Column("digest", sa.LargeBinary(32), nullable=False, unique=True),
+    sa.Column("key_pk", BIG, sa.ForeignKey("api_keys.pk", ondelete="CASCADE"), nullable=False, index=True),
+    sa.Column("created_at", Instant, nullable=False),
+    sa.Column("expires_at", Instant, nullable=False, index=True),
+    sqlite_autoincrement=True,
+)
+
 sessions = sa.Table(
     "sessions",
     metadata,
@@ -216,6 +227,7 @@ alerts = sa.Table(
     sa.Column("resolved_at", Instant),
     sa.Column("resolved_by", NAME),
     sa.Column("resolve_note", sa.Text),
+    sa.Column("resolved_automatically", sa.Boolean),
     _device_id(),
     sa.Index("ix_alerts_opened_at_pk", "opened_at", "pk"),
     sa.Index("ix_alerts_device_pk_opened_at_pk", "device_pk", "opened_at", "pk"),

@@ -6,7 +6,7 @@ import sqlalchemy as sa
 
 from storage.chunks import APPLIED
 from storage.database import WriteSession
-from storage.models import audit, chunks, delivery_pending, estimates_coarse, webhook_deliveries
+from storage.models import audit, chunks, delivery_pending, estimates_coarse, sign_ins, webhook_deliveries
 
 
 def _removal(column: sa.Column[datetime] | sa.Column[int], *kept: sa.ColumnElement[bool]) -> sa.Delete:
@@ -24,6 +24,7 @@ def _removal(column: sa.Column[datetime] | sa.Column[int], *kept: sa.ColumnEleme
 _receipts = _removal(chunks.c.received_at, chunks.c.state == APPLIED)
 _deliveries = _removal(webhook_deliveries.c.created_at, ~delivery_pending)
 _audit = _removal(audit.c.at)
+_sign_ins = _removal(sign_ins.c.expires_at)
 _coarse = _removal(estimates_coarse.c.day)
 
 
@@ -40,6 +41,11 @@ def deliveries(tx: WriteSession, before: datetime, limit: int) -> int:
 def audit_trail(tx: WriteSession, before: datetime, limit: int) -> int:
     """Remove entries of the audit trail."""
     return tx.execute(_audit, before=before, limit=limit).rowcount
+
+
+def ended_sign_ins(tx: WriteSession, now: datetime, limit: int) -> int:
+    """Remove sign-ins whose time is over."""
+    return tx.execute(_sign_ins, before=now, limit=limit).rowcount
 
 
 def coarse_history(tx: WriteSession, before_day: int, limit: int) -> int:

@@ -12,7 +12,7 @@ from api.app import create_app
 from api.settings import Settings
 from storage.database import Database
 from tests.postgres import Server, running_server
-from tests.service import ADMIN_KEY, Api
+from tests.service import ADMIN_KEY, NO_LIMITS, Api
 
 BACKENDS = ["sqlite", pytest.param("postgresql", marks=pytest.mark.postgres)]
 
@@ -62,7 +62,11 @@ def database(database_url: str) -> Iterator[Database]:
 @pytest.fixture
 def settings(database_url: str, tmp_path: Path) -> Settings:
     return Settings(
-        database_url=SecretStr(database_url), data_dir=tmp_path, admin_key=SecretStr(ADMIN_KEY), estimate_interval=5.0
+        database_url=SecretStr(database_url),
+        data_dir=tmp_path,
+        admin_key=SecretStr(ADMIN_KEY),
+        estimate_interval=5.0,
+        **NO_LIMITS,
     )
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import httpx
 
 from api.app import READY
-from tests.service import ADMIN_KEY, COMPILE_SECONDS, Api
+from tests.service import ADMIN_KEY, COMPILE_SECONDS, NO_LIMITS, Api
 
 ROOT = Path(__file__).parent.parent
 
@@ -31,6 +31,7 @@ class ServerProcess:
         self.environment = os.environ | {
             "LIVELLA_DATABASE_URL": database_url,
             "LIVELLA_ADMIN_KEY": ADMIN_KEY,
+            **{f"LIVELLA_{name.upper()}": str(value) for name, value in NO_LIMITS.items()},
             **{f"LIVELLA_{name.upper()}": value for name, value in settings.items()},
         }
         self.process: subprocess.Popen[bytes] | None = None

@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 import core
+from api.services import plain
 
 FAILED = 1
 """exit status when the service refused or could not be reached"""
@@ -35,12 +36,12 @@ def complain(message: str) -> None:
 
 
 def print_table(heads: Iterable[str], rows: Iterable[Iterable[str]], folded: Collection[str] = ()) -> None:
-    """Print a table, where it is too wide with some columns folded. Cells are taken as they are, brackets too."""
+    """Print a table, where it is too wide with some columns folded. Cells are no markup, and steer no terminal."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
     for head in heads:
         table.add_column(head, no_wrap=head not in folded, overflow="fold")
     for row in rows:
-        table.add_row(*map(Text, row))
+        table.add_row(*(Text(plain.one_line(cell)) for cell in row))
     stdout().print(table)
 
 

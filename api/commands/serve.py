@@ -54,6 +54,7 @@ def _serve(settings: Settings) -> None:
         access_log=False,
         ws="none",
         http=HTTP,
+        forwarded_allow_ips=settings.forwarded_allow_ips,
         log_config=logs.config(settings),
     )
 

@@ -2,8 +2,8 @@
 
 from fastapi import APIRouter
 
-from api.routes import alerts, chunks, devices, fleet, installations, session, stream, webhooks
+from api.routes import alerts, audit, chunks, devices, fleet, installations, keys, session, stream, webhooks
 
 api = APIRouter(prefix="/api/v1")
-for resource in (session, devices, chunks, installations, alerts, webhooks, fleet, stream):
+for resource in (session, devices, chunks, installations, alerts, webhooks, fleet, stream, keys, audit):
     api.include_router(resource.router)

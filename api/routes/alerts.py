@@ -46,7 +46,7 @@ def acknowledge_alert(
     alert_id: Number, note: schemas.AlertNote, principal: Manager, context: CurrentContext
 ) -> schemas.Alert:
     """Record that somebody has seen the alert."""
-    return alerting.acknowledge(context, alert_id, principal.name, note.note)
+    return alerting.acknowledge(context, principal, alert_id, note.note)
 
 
 @router.post("/{alert_id}/resolve")
@@ -54,4 +54,4 @@ def resolve_alert(
     alert_id: Number, note: schemas.AlertNote, principal: Manager, context: CurrentContext
 ) -> schemas.Alert:
     """Record that the alert is over."""
-    return alerting.resolve(context, alert_id, principal.name, note.note)
+    return alerting.resolve(context, principal, alert_id, note.note)

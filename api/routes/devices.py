@@ -5,7 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query
 
 from api import schemas
-from api.dependencies import AfterText, CurrentContext, KnownId, Limit, Requires
+from api.dependencies import AfterText, CurrentContext, Installer, KnownId, Limit, Requires
 from api.services import fleet, paging, presenting
 from api.services.access import Role
 from storage import devices
@@ -14,9 +14,11 @@ router = APIRouter(prefix="/devices", tags=["devices"], dependencies=[Depends(Re
 
 
 @router.post("", status_code=201)
-def register_device(draft: schemas.DeviceDraft, context: CurrentContext) -> schemas.RegisteredDevice:
+def register_device(
+    draft: schemas.DeviceDraft, principal: Installer, context: CurrentContext
+) -> schemas.RegisteredDevice:
     """Register a device. Its key is shown only in this answer."""
-    return fleet.register(context, draft)
+    return fleet.register(context, draft, principal)
 
 
 @router.get("")
@@ -43,16 +45,24 @@ def read_device(device_id: KnownId, context: CurrentContext) -> schemas.Device:
 
 
 @router.patch("/{device_id}")
-def edit_device(device_id: KnownId, patch: schemas.DevicePatch, context: CurrentContext) -> schemas.Device:
+def edit_device(
+    device_id: KnownId, patch: schemas.DevicePatch, principal: Installer, context: CurrentContext
+) -> schemas.Device:
     """Change name, vehicle, notes or the accelerometer's calibration; what is left out stays, null clears it.
 
     A calibration tells on the chunks applied from then on. A mounting found with other readings may be off by what the
     calibration corrects: restart the installation afterwards.
     """
-    return fleet.edit(context, device_id, patch.model_dump(exclude_unset=True))
+    return fleet.edit(context, device_id, patch.model_dump(exclude_unset=True), principal)
 
 
 @router.delete("/{device_id}", status_code=204)
-def remove_device(device_id: KnownId, context: CurrentContext) -> None:
+def remove_device(device_id: KnownId, principal: Installer, context: CurrentContext) -> None:
     """Remove a device with its key, its history and its alerts."""
-    fleet.remove(context, device_id)
+    fleet.remove(context, device_id, principal)
+
+
+@router.post("/{device_id}/key")
+def rotate_device_key(device_id: KnownId, principal: Installer, context: CurrentContext) -> schemas.RegisteredDevice:
+    """Make a new key for a device, shown only in this answer. Every key it had is revoked at once."""
+    return fleet.rotate_key(context, device_id, principal)

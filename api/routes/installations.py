@@ -1,14 +1,13 @@
 """The installation of a device: where it stands, its history, its mountings."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Path, Query, Response
+from fastapi import APIRouter, Header, Path, Query, Response
 from pydantic import AwareDatetime
 
 from api import schemas
-from api.dependencies import AnyDevice, BeforeNumber, CurrentContext, Limit, Requires
+from api.dependencies import AnyDevice, BeforeNumber, CurrentContext, Installer, Limit
 from api.services import fleet, history, paging, presenting
-from api.services.access import Role
 from api.services.errors import NotFoundError
 from storage import mounts
 
@@ -17,25 +16,32 @@ router = APIRouter(prefix="/devices/{device_id}", tags=["installation"])
 Number = Annotated[int, Path(ge=1, le=2**31 - 1, description="Number of the mounting, from 1.")]
 
 
-@router.get("/installation")
-def read_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
+IfNoneMatch = Annotated[str | None, Header()]
+
+
+@router.get("/installation", responses={304: {"description": "Not modified: nothing has changed since the ETag"}})
+def read_installation(
+    device_id: AnyDevice, context: CurrentContext, response: Response, if_none_match: IfNoneMatch = None
+) -> schemas.Installation:
     """Tell where the installation stands and what is missing."""
-    return fleet.read_installation(context, device_id)
+    tag, shown = fleet.read_installation(context, device_id, _tags(if_none_match))
+    response.headers.update(_caching(tag))
+    return _not_modified(tag) if shown is None else shown
 
 
-@router.post("/installation/restart", dependencies=[Depends(Requires(Role.INSTALLER))])
-def restart_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
+@router.post("/installation/restart")
+def restart_installation(principal: Installer, device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
     """Begin anew after a deliberate refit: the mounting is forgotten, the history kept."""
-    return fleet.restart(context, device_id)
+    return fleet.restart(context, device_id, principal)
 
 
-@router.post("/installation/level", dependencies=[Depends(Requires(Role.INSTALLER))])
-def level_installation(device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
+@router.post("/installation/level")
+def level_installation(principal: Installer, device_id: AnyDevice, context: CurrentContext) -> schemas.Installation:
     """Take it that the vehicle stands on level ground now: gravity then shows how the device is tilted.
 
     409 `not-still`: the device's last data do not show it standing still, or are not new enough to tell.
     """
-    return fleet.level_start(context, device_id)
+    return fleet.level_start(context, device_id, principal)
 
 
 @router.get("/estimates")
@@ -74,16 +80,22 @@ def read_current_mount(
     device_id: AnyDevice,
     context: CurrentContext,
     response: Response,
-    if_none_match: Annotated[str | None, Header()] = None,
+    if_none_match: IfNoneMatch = None,
 ) -> schemas.Mount:
     """Give the mounting in force; still readable, and marked, when it is suspect."""
     with context.database.read() as tx:
         row = _found(mounts.current(tx, fleet.number(tx, device_id)), "No mounting is confirmed yet.")
     tag = f'"{row.n}-{row.status}"'
-    response.headers.update({"ETag": tag, "Cache-Control": "no-cache"})
-    if tag in _tags(if_none_match):
-        return Response(status_code=304, headers=dict(response.headers))  # type: ignore[return-value]
-    return presenting.mount(row)
+    response.headers.update(_caching(tag))
+    return _not_modified(tag) if tag in _tags(if_none_match) else presenting.mount(row)
+
+
+def _caching(tag: str) -> dict[str, str]:
+    return {"ETag": tag, "Cache-Control": "no-cache"}
+
+
+def _not_modified(tag: str) -> Any:
+    return Response(status_code=304, headers=_caching(tag))
 
 
 def _tags(if_none_match: str | None) -> list[str]:

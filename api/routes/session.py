@@ -3,9 +3,12 @@
 from fastapi import APIRouter, Depends, Request, Response
 
 from api import schemas
-from api.dependencies import COOKIE, Caller, CurrentContext, refuse_other_sites
-from api.services import access
+from api.dependencies import COOKIE, Caller, CurrentContext, by_key, charged, refuse_other_sites
+from api.rates import address
+from api.services import sign_ins
 from api.services.access import Principal
+from api.services.context import Context
+from api.services.errors import UnauthenticatedError
 
 router = APIRouter(prefix="/session", tags=["session"])
 
@@ -13,10 +16,10 @@ router = APIRouter(prefix="/session", tags=["session"])
 @router.post("", dependencies=[Depends(refuse_other_sites)])
 def sign_in(given: schemas.SignIn, request: Request, response: Response, context: CurrentContext) -> schemas.SignedIn:
     """Sign in with a key."""
-    principal = access.authenticate(context, given.key)
+    principal = charged(request, _authenticate(request, context, given.key))
     response.set_cookie(
         COOKIE,
-        access.sign_in(context, principal),
+        sign_ins.sign_in(context, principal, address(request)),
         max_age=int(context.settings.session_hours * 3600),
         path="/api",
         secure=request.url.scheme == "https",
@@ -33,9 +36,20 @@ def read_session(principal: Caller) -> schemas.SignedIn:
 
 
 @router.delete("", status_code=204, dependencies=[Depends(refuse_other_sites)])
-def sign_out(response: Response) -> None:
-    """Sign out."""
+def sign_out(request: Request, response: Response, context: CurrentContext) -> None:
+    """Sign out: the cookie opens nothing any more, wherever it may have got to."""
+    cookie = request.cookies.get(COOKIE)
+    if cookie is not None:
+        sign_ins.sign_out(context, cookie, address(request))
     response.delete_cookie(COOKIE, path="/api", httponly=True, samesite="strict")
+
+
+def _authenticate(request: Request, context: Context, key: str) -> Principal:
+    try:
+        return by_key(request, context, key)
+    except UnauthenticatedError:
+        sign_ins.refused(context, address(request))
+        raise
 
 
 def _present(principal: Principal) -> schemas.SignedIn:

@@ -10,7 +10,7 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from api import schemas
 from api.dependencies import Caller, CurrentContext, CurrentHub
-from api.services import access
+from api.services import sign_ins
 from api.services.access import Principal, Role
 from api.services.context import Context
 from storage import events
@@ -21,7 +21,7 @@ router = APIRouter(prefix="/stream", tags=["stream"])
 RETRY_MS = 2000
 """ms a browser waits before it connects again"""
 CHECK_INTERVAL = 30.0
-"""s between two looks whether the listener's key is still valid"""
+"""s between two looks whether the listener's key, and sign-in, still hold"""
 
 
 @router.get("", response_class=EventSourceResponse)
@@ -46,7 +46,7 @@ async def stream(
     async for batch in hub.follow(start):
         if time.monotonic() - checked > CHECK_INTERVAL:
             checked = time.monotonic()
-            if not await to_thread.run_sync(access.is_valid, context, principal):
+            if not await to_thread.run_sync(sign_ins.is_valid, context, principal):
                 return
         for event in batch:
             if _may_see(principal, event):

@@ -18,7 +18,7 @@ Number = Annotated[int, Path(ge=1, le=2**63 - 1)]
 @router.post("", status_code=201)
 def add_webhook(draft: schemas.WebhookDraft, principal: Manager, context: CurrentContext) -> schemas.WebhookSecret:
     """Make a webhook. Its secret is shown only in this answer."""
-    return webhooks.add(context, draft, principal.name)
+    return webhooks.add(context, principal, draft)
 
 
 @router.get("")
@@ -36,21 +36,23 @@ def read_webhook(webhook_id: Number, context: CurrentContext) -> schemas.Webhook
 
 
 @router.patch("/{webhook_id}")
-def edit_webhook(webhook_id: Number, patch: schemas.WebhookPatch, context: CurrentContext) -> schemas.Webhook:
+def edit_webhook(
+    webhook_id: Number, patch: schemas.WebhookPatch, principal: Manager, context: CurrentContext
+) -> schemas.Webhook:
     """Change a webhook; what is left out stays."""
-    return webhooks.edit(context, webhook_id, patch.model_dump(exclude_unset=True))
+    return webhooks.edit(context, principal, webhook_id, patch.model_dump(exclude_unset=True))
 
 
 @router.delete("/{webhook_id}", status_code=204)
-def remove_webhook(webhook_id: Number, context: CurrentContext) -> None:
+def remove_webhook(webhook_id: Number, principal: Manager, context: CurrentContext) -> None:
     """Remove a webhook with its deliveries."""
-    webhooks.remove(context, webhook_id)
+    webhooks.remove(context, principal, webhook_id)
 
 
 @router.post("/{webhook_id}/secret")
-def rotate_webhook_secret(webhook_id: Number, context: CurrentContext) -> schemas.WebhookSecret:
+def rotate_webhook_secret(webhook_id: Number, principal: Manager, context: CurrentContext) -> schemas.WebhookSecret:
     """Make a new secret, shown only in this answer; the former one signs nothing from now on."""
-    return webhooks.rotate_secret(context, webhook_id)
+    return webhooks.rotate_secret(context, principal, webhook_id)
 
 
 @router.get("/{webhook_id}/deliveries")
@@ -63,12 +65,12 @@ def list_webhook_deliveries(
 
 
 @router.post("/{webhook_id}/redeliver")
-def redeliver_webhook(webhook_id: Number, context: CurrentContext) -> schemas.Redelivery:
+def redeliver_webhook(webhook_id: Number, principal: Manager, context: CurrentContext) -> schemas.Redelivery:
     """Try anew what was given up."""
-    return webhooks.redeliver(context, webhook_id)
+    return webhooks.redeliver(context, principal, webhook_id)
 
 
 @router.post("/{webhook_id}/test")
-def test_webhook(webhook_id: Number, context: CurrentContext) -> schemas.WebhookTest:
+def test_webhook(webhook_id: Number, principal: Manager, context: CurrentContext) -> schemas.WebhookTest:
     """Call the webhook now with a message of type `test` and tell how that went."""
-    return webhooks.test(context, webhook_id)
+    return webhooks.test(context, principal, webhook_id)

@@ -8,7 +8,7 @@ import numpy as np
 import core
 from api import metrics, schemas
 from api.formats.log import Reading
-from api.services import alerting, findings, history, presenting, publishing
+from api.services import alerting, findings, history, presenting, publishing, rules, watching
 from api.services.context import Context
 from api.services.errors import NotFoundError, NotStillError, UnusableError
 from api.services.foresight import Foresight, advance
@@ -74,7 +74,8 @@ class Calibration:
         """The device was refitted on purpose: forget the mounting, keep the history."""
         self._state = core.restart(self.context.params, self.state)
         mounts.supersede(self.tx, self.row.device_pk)
-        alerting.end(self.tx, self.row.device_pk, "The calibration was restarted.", self.now)
+        alerting.refitted(self.tx, self.row.device_pk, self.now)
+        self.row = self.row._replace(watch=rules.forget(self.row.watch, rules.OF_MOUNTING))
         self._show(core.status(self.context.params, self.state))
         self.row = self.row._replace(since_session_pk=None, since_t=None, since_at=self.now)
 
@@ -124,6 +125,7 @@ class Calibration:
         lag = self.now - started_at - timedelta(seconds=t_last)
         metrics.LAG.observe(max(lag.total_seconds(), 0.0))
         self._record(session, outcome, t_last, received_at)
+        self._watch(session, reading.samples, outcome, received_at)
         return session, outcome
 
     def _advance(self, reading: Reading) -> tuple[core.State, core.Outcome]:
@@ -149,12 +151,17 @@ class Calibration:
         device_pk = self.row.device_pk
         if event.kind == core.EventKind.CONFIRMED:
             self._confirm(session, event)
-            alerting.end(self.tx, device_pk, "A new mounting was confirmed.", self.now)
+            alerting.end(self.tx, device_pk, [alerting.MOVED], "A new mounting was confirmed.", self.now)
         if event.kind == core.EventKind.ORIENTATION_CHANGED:
             mounts.suspect(self.tx, device_pk)
         current = mounts.current(self.tx, device_pk)
         where = findings.Where(session.name, session.started_at, None if current is None else current.n)
-        alerting.raise_for(self.tx, device_pk, event, where, self.now)
+        alerting.raise_for(self.tx, self.context, device_pk, event, where, self.now)
+
+    def _watch(self, session: Session, samples: core.Samples, outcome: core.Outcome, received_at: datetime) -> None:
+        """Let the rules of the alerts see the chunk."""
+        watch = watching.observe(self.tx, self.context, self.row, session, samples, outcome, received_at, self.now)
+        self.row = self.row._replace(watch=watch)
 
     def _confirm(self, session: Session, event: core.Event) -> None:
         if event.quaternion is None or event.sigma is None or event.verification is None:

@@ -1,9 +1,10 @@
 """What every service needs, made once per process."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 
+from api.services.uses import Uses
 from api.settings import Settings
 from core import PRESETS, Parameters
 from storage.database import Database
@@ -28,6 +29,7 @@ class Context:
     clock: Callable[[], datetime] = utc_now
     wake: Callable[[], None] = _nobody
     """called after a commit that wrote events, from any thread"""
+    uses: Uses = field(default_factory=Uses)
 
     @classmethod
     def make(cls, settings: Settings, clock: Callable[[], datetime] = utc_now) -> "Context":

@@ -96,6 +96,31 @@ class TooLargeError(ServiceError):
     title = "The chunk is too large"
 
 
+class TooManyRequestsError(ServiceError):
+    """More calls than are allowed; `retry_after`, s, says when to try again."""
+
+    kind = "too-many-requests"
+    title = "Too many requests"
+
+    def __init__(self, detail: str, retry_after: int) -> None:
+        super().__init__(detail)
+        self.retry_after = retry_after
+
+
+class LastAdminError(ConflictError):
+    """Nobody could administer the service any more."""
+
+    kind = "last-admin-key"
+    title = "This is the last admin key"
+
+
+class ExpiryError(ServiceError):
+    """A key would have expired before it was made."""
+
+    kind = "expiry-passed"
+    title = "The key would have expired already"
+
+
 class StartingError(ServiceError):
     """Not ready yet."""
 

@@ -33,6 +33,13 @@ FAULTS = {
 UNKNOWN_FAULT = "The sensor's readings cannot be right."
 
 
+DATA = (
+    *("session", "t", "at", "since_t", "since", "mount", "quaternion", "sigma_deg", "angle_deg", "axis", "evidence"),
+    *("fault", "reason", "seen", "threshold", "unit"),
+)
+"""What the data of an alert may tell; `seen` and `threshold` are in `unit`."""
+
+
 class Where(NamedTuple):
     """What an event is about."""
 
@@ -63,13 +70,12 @@ def _message(event: core.Event, where: Where) -> str:
 
 
 def _data(event: core.Event, where: Where) -> dict[str, Any]:
-    """Give the same keys for every alert; None is what is not known, or says nothing of this kind."""
-    return {
+    known = {
         "session": where.session,
         "t": event.t,
-        "at": _text(_moment(where, event.t)),
+        "at": text(_moment(where, event.t)),
         "since_t": event.since,
-        "since": _text(_moment(where, event.since)),
+        "since": text(_moment(where, event.since)),
         "mount": where.mount,
         "quaternion": None if event.quaternion is None else event.quaternion.tolist(),
         "sigma_deg": None if event.sigma is None else presenting.degrees(event.sigma),
@@ -79,6 +85,12 @@ def _data(event: core.Event, where: Where) -> dict[str, Any]:
         "fault": event.fault and str(event.fault),
         "reason": event.reason,
     }
+    return data(known)
+
+
+def data(known: dict[str, Any]) -> dict[str, Any]:
+    """Give the same keys for every alert; None is what is not known, or says nothing of this kind."""
+    return dict.fromkeys(DATA) | known
 
 
 def _moment(where: Where, t: float | None) -> datetime | None:
@@ -86,6 +98,6 @@ def _moment(where: Where, t: float | None) -> datetime | None:
     return None if t is None or where.started_at is None else presenting.utc(where.started_at, t)
 
 
-def _text(moment: datetime | None) -> str | None:
+def text(moment: datetime | None) -> str | None:
     """Give a moment as RFC 3339 to the millisecond."""
     return None if moment is None else moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import anyio
 from anyio import CancelScope, to_thread
 
-from api.services import ingest, retention, webhooks_dispatch
+from api.services import ingest, retention, watching, webhooks_dispatch
 from api.services.context import Context
 from api.services.leading import Leadership
 
@@ -28,8 +28,15 @@ class Job(NamedTuple):
     leader_only: bool = True
 
 
+def write_uses(context: Context) -> None:
+    """Write when keys were last used."""
+    context.uses.write(context.database)
+
+
 JOBS = (
     Job("gaps open too long", 5.0, ingest.close_gaps),
+    Job("devices that send nothing", 60.0, watching.find_silent),
+    Job("last uses of keys", 60.0, write_uses, leader_only=False),
     Job("fine history to coarse", 60.0, retention.coarsen),
     Job("rows kept no longer", 60.0, retention.tidy),
 )
@@ -48,6 +55,14 @@ async def run(context: Context) -> None:
     finally:
         with CancelScope(shield=True):
             await to_thread.run_sync(_resign, leadership)
+
+
+def finish(context: Context) -> None:
+    """Do at the end what should not be lost."""
+    try:
+        write_uses(context)
+    except Exception:
+        log.exception("when keys were last used cannot be written")
 
 
 def do(job: Job, context: Context, leadership: Leadership) -> bool:

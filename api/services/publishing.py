@@ -31,12 +31,12 @@ def installation_touched(
     installation_changed(tx, show(tx, row._replace(revision=row.revision + 1), device_id, params), now)
 
 
-def alert_changed(tx: WriteSession, pk: int, now: datetime) -> None:
-    """Tell how an alert stands, to the live stream and to webhooks."""
+def alert_changed(tx: WriteSession, pk: int, now: datetime, is_opened: bool = False) -> None:
+    """Tell how an alert stands, to the live stream and to webhooks; `is_opened`: just now, perhaps again."""
     row = alerts.find(tx, pk)
     if row is not None:
         events.add(tx, row.device_id, "alert", presenting.alert(row).model_dump_json(), now)
-        webhooks_queue.alert_changed(tx, row, now)
+        webhooks_queue.alert_changed(tx, row, now, is_opened)
 
 
 def device_changed(

@@ -73,6 +73,7 @@ def tidy(context: Context) -> bool:
         _remove(context, lambda tx: retention.receipts(tx, _ago(context, settings.receipt_days), ROWS)),
         _remove(context, lambda tx: retention.deliveries(tx, _ago(context, settings.delivery_days), ROWS)),
         _remove(context, lambda tx: retention.audit_trail(tx, _ago(context, settings.audit_days), ROWS)),
+        _remove(context, lambda tx: retention.ended_sign_ins(tx, context.clock(), ROWS)),
         _remove(context, lambda tx: retention.coarse_history(tx, last_day, ROWS)),
     ]
     return any(left)

@@ -4,7 +4,7 @@ import numpy as np
 
 import core
 from api.formats import parse
-from api.services import access
+from api.services import keyring
 from api.services.context import Context
 from storage import events, meta, migrate
 
@@ -17,10 +17,9 @@ def prepare(context: Context) -> str | None:
     migrate.upgrade(context.database)
     with context.database.write() as tx:
         migrate.lock(tx)
-        access.ensure_cookie_secret(tx)
         if meta.get(tx, events.PRUNED) is None:
             meta.put(tx, events.PRUNED, "0.0")
-        return access.first_admin_key(tx, context)
+        return keyring.first_admin_key(tx, context)
 
 
 def warm_up(context: Context) -> None:

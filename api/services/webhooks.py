@@ -8,7 +8,8 @@ import httpcore
 import httpx
 
 from api import schemas
-from api.services import webhooks_dispatch, webhooks_network, webhooks_queue
+from api.services import auditing, webhooks_dispatch, webhooks_network, webhooks_queue
+from api.services.access import Principal
 from api.services.context import Context
 from api.services.errors import ConflictError, NotFoundError, WebhookUrlError
 from api.services.webhooks_sending import Result, Sender
@@ -21,14 +22,15 @@ PORTS = {"https": 443, "http": 80}
 TEST_TEXT = "This is a test; no alert has changed."
 
 
-def add(context: Context, draft: schemas.WebhookDraft, by: str) -> schemas.WebhookSecret:
+def add(context: Context, principal: Principal, draft: schemas.WebhookDraft) -> schemas.WebhookSecret:
     """Make a webhook and its secret."""
     check_url(draft.url, context.settings.webhook_allow_private)
     secret, now = new_secret(), context.clock()
     with context.database.write() as tx:
         if webhooks.count(tx) >= MOST:
             raise ConflictError(f"There are {MOST} webhooks, which is as many as there may be.")
-        pk = webhooks.add(tx, draft.model_dump(), secret, by, now)
+        pk = webhooks.add(tx, draft.model_dump(), secret, principal.name, now)
+        auditing.record(tx, principal, "webhook.create", target(pk), _told(draft.model_dump()), now)
         return schemas.WebhookSecret(webhook=present(_found(tx, pk)), secret=secret)
 
 
@@ -38,32 +40,36 @@ def find(context: Context, pk: int) -> schemas.Webhook:
         return present(_found(tx, pk))
 
 
-def edit(context: Context, pk: int, changes: dict[str, Any]) -> schemas.Webhook:
+def edit(context: Context, principal: Principal, pk: int, changes: dict[str, Any]) -> schemas.Webhook:
     """Change a webhook; what waits for another attempt is due at once when that may help."""
     if "url" in changes:
         check_url(changes["url"], context.settings.webhook_allow_private)
+    now = context.clock()
     with context.database.write() as tx:
         _found(tx, pk)
         webhooks.change(tx, pk, changes)
         if "url" in changes or changes.get("active"):
-            deliveries.hasten(tx, pk, context.clock())
+            deliveries.hasten(tx, pk, now)
+        auditing.record(tx, principal, "webhook.edit", target(pk), _told(changes), now)
         return present(_found(tx, pk))
 
 
-def rotate_secret(context: Context, pk: int) -> schemas.WebhookSecret:
+def rotate_secret(context: Context, principal: Principal, pk: int) -> schemas.WebhookSecret:
     """Make a new secret; the former one signs nothing from now on."""
-    secret = new_secret()
+    secret, now = new_secret(), context.clock()
     with context.database.write() as tx:
         _found(tx, pk)
         webhooks.change(tx, pk, {"secret": secret})
+        auditing.record(tx, principal, "webhook.rotate_secret", target(pk), None, now)
         return schemas.WebhookSecret(webhook=present(_found(tx, pk)), secret=secret)
 
 
-def remove(context: Context, pk: int) -> None:
+def remove(context: Context, principal: Principal, pk: int) -> None:
     """Remove a webhook with its deliveries."""
     with context.database.write() as tx:
         if not webhooks.remove(tx, pk):
             raise _unknown()
+        auditing.record(tx, principal, "webhook.remove", target(pk), None, context.clock())
 
 
 def deliveries_page(context: Context, pk: int, limit: int, before: int | None) -> list[deliveries.Delivery]:
@@ -73,15 +79,17 @@ def deliveries_page(context: Context, pk: int, limit: int, before: int | None) -
         return deliveries.page(tx, pk, limit, before)
 
 
-def redeliver(context: Context, pk: int) -> schemas.Redelivery:
+def redeliver(context: Context, principal: Principal, pk: int) -> schemas.Redelivery:
     """Try anew what was given up."""
     now = context.clock()
     with context.database.write() as tx:
         _found(tx, pk)
-        return schemas.Redelivery(deliveries=deliveries.revive(tx, pk, now, now + webhooks_queue.SPAN))
+        revived = deliveries.revive(tx, pk, now, now + webhooks_queue.SPAN)
+        auditing.record(tx, principal, "webhook.redeliver", target(pk), {"deliveries": revived}, now)
+        return schemas.Redelivery(deliveries=revived)
 
 
-def test(context: Context, pk: int) -> schemas.WebhookTest:
+def test(context: Context, principal: Principal, pk: int) -> schemas.WebhookTest:
     """Call a webhook now and tell how that went; it is not tried again."""
     now = context.clock()
     with context.database.read() as tx:
@@ -93,6 +101,7 @@ def test(context: Context, pk: int) -> schemas.WebhookTest:
     with context.database.write() as tx:
         if webhooks.find(tx, pk) is not None:
             _store_test(tx, row, result)
+        auditing.record(tx, principal, "webhook.test", target(pk), {"delivered": result.delivered}, now)
     told = result._asdict()
     told.pop("retry_after")
     return schemas.WebhookTest(delivered=result.delivered, **told)
@@ -153,6 +162,19 @@ def present_delivery(row: deliveries.Delivery) -> schemas.WebhookDelivery:
     """Give a delivery as a document."""
     shown = row._asdict() | {"id": row.pk}
     return schemas.WebhookDelivery.model_validate({name: shown[name] for name in schemas.WebhookDelivery.model_fields})
+
+
+def target(pk: int) -> str:
+    """Give the path of a webhook, as the audit trail has it."""
+    return f"webhooks/{pk}"
+
+
+def _told(values: dict[str, Any]) -> dict[str, Any]:
+    """Give what the audit trail tells: of a URL only where it leads, since the rest is often a secret."""
+    if "url" not in values:
+        return values
+    url = httpx.URL(values["url"])
+    return values | {"url": f"{url.scheme}://{url.netloc.decode()}"}
 
 
 def _found(tx: ReadSession, pk: int) -> webhooks.Webhook:

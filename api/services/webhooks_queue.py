@@ -18,24 +18,24 @@ SPAN = timedelta(seconds=sum(SCHEDULE))
 TEST = "test"
 
 
-def alert_changed(tx: WriteSession, alert: alerts.Alert, now: datetime) -> None:
+def alert_changed(tx: WriteSession, alert: alerts.Alert, now: datetime, is_opened: bool) -> None:
     """Store a delivery for every webhook that wants to know of this alert."""
     wanting = [webhook for webhook in webhooks.hold_active(tx) if webhook.wants(alert.kind, alert.severity)]
     if wanting:
-        kind = event_type(alert)
+        kind = event_type(alert, is_opened)
         payload = message(kind, presenting.alert(alert).model_dump(mode="json"), now)
         rows = [delivery(webhook.pk, kind, payload, now) | {"device_id": alert.device_id} for webhook in wanting]
         deliveries.add(tx, rows)
 
 
-def event_type(alert: alerts.Alert) -> str:
-    """Tell what has just happened to an alert."""
+def event_type(alert: alerts.Alert, is_opened: bool = False) -> str:
+    """Tell what has just happened to an alert; one that is opened again is told as opened, since its end was told."""
     if alert.state == alerts.RESOLVED:
         return "alert.resolved"
     if alert.state == alerts.ACKNOWLEDGED and alert.acknowledged_at == alert.updated_at:
         return "alert.acknowledged"
     is_new = alert.occurrences == 1 and alert.opened_at == alert.updated_at
-    return "alert.opened" if is_new else "alert.updated"
+    return "alert.opened" if is_opened or is_new else "alert.updated"
 
 
 def message(kind: str, data: Mapping[str, Any], now: datetime) -> str:

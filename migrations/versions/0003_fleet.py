@@ -21,6 +21,7 @@ ADDED = (
     ("api_keys", "expires_at", sa.BigInteger()),
     ("api_keys", "created_by", sa.String(128)),
     ("installations", "watch", sa.JSON(none_as_null=True)),
+    ("alerts", "resolved_automatically", sa.Boolean()),
 )
 COPIES = (
     ("devices", "search", sa.Text()),
@@ -67,6 +68,8 @@ def upgrade() -> None:
     _deliveries()
     _audit()
     _history()
+    _sign_ins()
+    op.execute("DELETE FROM meta WHERE name = 'cookie_secret'")  # signed the cookies that `sign_ins` replaces
     op.create_table(
         "leases",
         sa.Column("name", sa.String(64), nullable=False),
@@ -200,8 +203,25 @@ def _history_undone() -> None:
     op.create_index("ix_estimates_session_pk_pk", "estimates", ["session_pk", "pk"], unique=False)
 
 
+def _sign_ins() -> None:
+    op.create_table(
+        "sign_ins",
+        sa.Column("pk", BIG, nullable=False),
+        sa.Column("digest", sa.LargeBinary(32), nullable=False),
+        sa.Column("key_pk", BIG, nullable=False),
+        sa.Column("created_at", sa.BigInteger(), nullable=False),
+        sa.Column("expires_at", sa.BigInteger(), nullable=False),
+        sa.ForeignKeyConstraint(["key_pk"], ["api_keys.pk"], name="fk_sign_ins_key_pk", ondelete="CASCADE"),
+        sa.PrimaryKeyConstraint("pk", name="pk_sign_ins"),
+        sa.UniqueConstraint("digest", name="uq_sign_ins_digest"),
+        sqlite_autoincrement=True,
+    )
+    op.create_index("ix_sign_ins_key_pk", "sign_ins", ["key_pk"], unique=False)
+    op.create_index("ix_sign_ins_expires_at", "sign_ins", ["expires_at"], unique=False)
+
+
 def downgrade() -> None:
-    for table in ("leases", "audit", "webhook_deliveries", "webhooks"):
+    for table in ("sign_ins", "leases", "audit", "webhook_deliveries", "webhooks"):
         op.drop_table(table)
     _history_undone()
     for name, _ in UNRESOLVED_INDEXES:

@@ -1,6 +1,5 @@
 import logging
 import threading
-import time
 
 import pytest
 import sqlalchemy as sa
@@ -11,70 +10,11 @@ from api.app import create_app
 from api.services import access, startup
 from api.services.context import Context
 from api.settings import Settings
-from storage import keys
 from storage.database import Database
-from storage.models import api_keys, meta
+from storage.models import api_keys, meta, sign_ins
 from tests.conftest import Clock
 from tests.drives import chunks
 from tests.service import ADMIN_KEY, Api
-
-ROLES = ("device", "installer", "manager", "admin")
-NEEDED = {
-    ("POST", "/devices"): "installer",
-    ("GET", "/devices"): "installer",
-    ("GET", "/devices/box-1"): "installer",
-    ("PATCH", "/devices/box-1"): "installer",
-    ("POST", "/devices/box-1/chunks"): "device",
-    ("GET", "/devices/box-1/installation"): "device",
-    ("POST", "/devices/box-1/installation/restart"): "installer",
-    ("POST", "/devices/box-1/installation/level"): "installer",
-    ("GET", "/devices/box-1/estimates"): "device",
-    ("GET", "/devices/box-1/mounts"): "device",
-    ("GET", "/devices/box-1/mounts/1"): "device",
-    ("GET", "/devices/box-1/mount"): "device",
-    ("GET", "/alerts"): "manager",
-    ("GET", "/alerts/1"): "manager",
-    ("POST", "/alerts/1/acknowledge"): "manager",
-    ("POST", "/alerts/1/resolve"): "manager",
-    ("GET", "/fleet/summary"): "device",
-    ("GET", "/session"): "device",
-    ("DELETE", "/devices/box-1"): "installer",
-}
-
-
-@pytest.fixture
-def role_keys(api: Api, database: Database, clock: Clock) -> dict[str, str]:
-    """A key of each role."""
-    made = {"device": api.add_device().key, "admin": ADMIN_KEY}
-    with database.write() as tx:
-        for role in ("installer", "manager"):
-            made[role] = access.new_key()
-            keys.add(tx, access.digest(made[role]), role, role, clock())
-    return made
-
-
-@pytest.mark.parametrize("role", ROLES)
-def test_each_role_may_what_the_contract_says(api: Api, role_keys: dict[str, str], role: str) -> None:
-    caller = api.as_(role_keys[role])
-    for (method, path), needed in NEEDED.items():
-        status = caller.call(method, path).status_code
-        allowed = ROLES.index(role) >= ROLES.index(needed)
-        assert (status not in {401, 403}) == allowed, (role, method, path, status)
-
-
-def test_every_route_asks_for_a_key(api: Api) -> None:
-    document = api.client.request("GET", "/openapi.json").json()
-    asked = 0
-    for path, operations in document["paths"].items():
-        for method in operations:
-            if path.startswith("/api/") and not (path.endswith("/session") and method in {"post", "delete"}):
-                concrete = path.replace("{device_id}", "x").replace("{n}", "1").replace("{alert_id}", "1")
-                for key in (None, "wrong", ""):
-                    response = api.as_(key).call(method.upper(), concrete)
-                    assert response.status_code == 401, (method, path, key)
-                    assert response.headers["www-authenticate"].startswith("Bearer")
-                asked += 1
-    assert asked >= len(NEEDED) - 1
 
 
 def test_a_device_cannot_tell_which_other_devices_exist(api: Api) -> None:
@@ -97,8 +37,8 @@ def test_a_key_is_stored_only_as_a_hash(api: Api, database: Database) -> None:
     with database.read() as tx:
         rows = [str(tuple(row)) for table in (api_keys, meta) for row in tx.connection.execute(sa.select(table))]
         assert tx.value(sa.select(sa.func.count()).select_from(api_keys)) == 2
-    for key in (device.key, ADMIN_KEY):
-        assert not any(key in row for row in rows)
+    for part in (device.key[13:], ADMIN_KEY[1:]):  # 12 characters are kept to tell keys apart, none of a chosen one
+        assert not any(part[:8] in row for row in rows)
     assert device.key.startswith("livella_")
     assert len(device.key) == len("livella_") + 43
 
@@ -174,8 +114,6 @@ def test_a_sign_in_is_a_cookie_no_script_and_no_other_site_can_use(api: Api, cli
     assert ADMIN_KEY not in cookie
     assert client.get("/api/v1/session").json() == {"role": "admin", "name": "admin", "device_id": None}
     assert client.get("/api/v1/devices").status_code == 200
-    assert client.delete("/api/v1/session").status_code == 204
-    assert client.get("/api/v1/session").status_code == 401
     secure = client.post("https://testserver/api/v1/session", json={"key": ADMIN_KEY})
     assert "Secure" in secure.headers["set-cookie"]
 
@@ -219,6 +157,28 @@ def test_a_key_in_the_header_needs_no_origin(api: Api, client: TestClient) -> No
     api.add_device()
 
 
+def test_signing_out_ends_the_sign_in_and_no_other(api: Api, client: TestClient, database: Database) -> None:
+    sign_in(client)
+    stolen = client.cookies["livella_session"]
+    client.cookies.clear()
+    sign_in(client)
+    kept = client.cookies["livella_session"]
+    client.cookies.set("livella_session", stolen)
+    assert client.delete("/api/v1/session").status_code == 204
+    assert [signed_in(client, cookie) for cookie in (stolen, kept)] == [401, 200]
+    client.cookies.clear()
+    assert client.delete("/api/v1/session").status_code == 204
+    with database.read() as tx:
+        stored = list(tx.connection.execute(sa.select(sign_ins.c.digest)).scalars())
+    assert stored == [access.digest(kept)]
+
+
+def signed_in(client: TestClient, cookie: str) -> int:
+    client.cookies.clear()
+    client.cookies.set("livella_session", cookie)
+    return client.get("/api/v1/session").status_code
+
+
 def test_revoking_a_key_ends_its_sign_in(api: Api, client: TestClient) -> None:
     device = api.add_device()
     sign_in(client, device.key)
@@ -234,9 +194,9 @@ def test_a_forged_cookie_is_refused(api: Api, client: TestClient, cookie: str) -
     assert client.get("/api/v1/session").status_code == 401
 
 
-def test_a_sign_in_ends(settings: Settings, clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
-    with TestClient(create_app(settings, clock)) as client:
-        sign_in(client)
-        later = time.time() + settings.session_hours * 3600 + 2
-        monkeypatch.setattr("itsdangerous.timed.time.time", lambda: later)
-        assert client.get("/api/v1/session").status_code == 401
+def test_a_sign_in_ends(settings: Settings, clock: Clock, client: TestClient) -> None:
+    sign_in(client)
+    clock.advance(settings.session_hours * 3600 - 1)
+    assert client.get("/api/v1/session").status_code == 200
+    clock.advance(1)
+    assert client.get("/api/v1/session").status_code == 401

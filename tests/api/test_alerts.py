@@ -1,3 +1,4 @@
+import itertools
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -6,15 +7,17 @@ import pytest
 import sqlalchemy as sa
 
 import core
-from api.services import alerting, findings
+from api.formats.writer import write_native_csv
+from api.services import findings
 from api.services.findings import Where
 from api.services.words import degrees_text
 from storage import alerts
 from storage import models as tables
-from storage.database import Database
+from storage.database import Database, WriteSession
 from tests.conftest import Clock
 from tests.drives import CHUNK_SECONDS, REMOUNTED_AT, remounted
 from tests.service import Api, Device
+from tests.watched import drive, pieces
 
 NOW = datetime(2024, 5, 6, 7, 8, 9, tzinfo=UTC)
 
@@ -63,7 +66,7 @@ def assert_says_how_it_moved(data: dict[str, Any], message: str) -> None:
     """Check axis, beginning and evidence where the estimator gives them."""
     assert set(data) == {
         *("session", "t", "at", "since_t", "since", "mount", "quaternion", "sigma_deg"),
-        *("angle_deg", "axis", "evidence", "fault", "reason"),
+        *("angle_deg", "axis", "evidence", "fault", "reason", "seen", "threshold", "unit"),
     }
     began = datetime.fromisoformat(data["at"]) - timedelta(seconds=data["t"])
     assert message.startswith("The device ")
@@ -83,22 +86,30 @@ def assert_says_how_it_moved(data: dict[str, Any], message: str) -> None:
         assert seen["value"][-1] >= seen["threshold"] > 0
 
 
-def test_a_newly_confirmed_mounting_resolves_it_and_that_it_is_loose(
+def test_a_newly_confirmed_mounting_resolves_it_but_not_that_it_is_loose(
     moved: Device, api: Api, clock: Clock, database: Database
 ) -> None:
     find_fault(database, core.Fault.DEVICE_LOOSE)
     clock.advance(7)
-    shown = moved.send_all(remounted().chunks[len(until_moved()) :], start=len(until_moved()))["installation"]
-    found = api.get("/alerts")["items"]
-    assert [alert["kind"] for alert in found] == ["device_loose", "orientation_changed"]
-    assert shown["open_alerts"] == 0
-    for alert in found:
-        assert (alert["state"], alert["resolved_by"], alert["resolved_at"]) == (
-            "resolved",
-            "service",
-            "2024-05-06T07:08:16Z",
-        )
-        assert alert["resolve_note"] == "A new mounting was confirmed."
+    moved.send_all(remounted().chunks[len(until_moved()) :], start=len(until_moved()))
+    loose, turned = api.get("/alerts")["items"]
+    assert (loose["kind"], loose["state"]) == ("device_loose", "open")
+    assert (turned["kind"], turned["state"]) == ("orientation_changed", "resolved")
+    assert (turned["resolved_by"], turned["resolved_at"]) == ("service", "2024-05-06T07:08:16Z")
+    assert turned["resolve_note"] == "A new mounting was confirmed."
+
+
+def test_a_device_is_no_longer_loose_when_its_mounting_has_held(api: Api, database: Database) -> None:
+    device = api.add_device()
+    find_fault(database, core.Fault.DEVICE_LOOSE)  # raised before there were rules: found open at the first chunk
+    chunks = [write_native_csv(piece) for piece in pieces(drive("city", 2700.0), 150.0)]
+    device.send_all(tuple(chunks[:4]))
+    assert device.installation()["stage"] == "confirmed"
+    assert api.get("/alerts")["items"][0]["state"] == "open"
+    device.send_all(tuple(chunks[4:]), start=4)
+    (alert,) = api.get("/alerts")["items"]
+    assert (alert["state"], alert["resolved_by"]) == ("resolved", "service")
+    assert alert["resolve_note"].startswith("A confirmed mounting has held for")
 
 
 def test_a_restart_resolves_it(moved: Device, api: Api) -> None:
@@ -151,6 +162,64 @@ def test_alerts_are_listed_newest_first_and_filtered(api: Api, clock: Clock) -> 
         api.get(f"/alerts?{query}", 422)
 
 
+FIELDS: dict[str, tuple[Any, ...]] = {
+    "state": ("open", "acknowledged", "resolved"),
+    "kind": ("gps_lost", "sensor_fault"),
+    "severity": ("warning", "critical"),
+    "device_id": ("box-0", "box-1"),
+    "since": ("2024-05-06T07:08:14Z",),
+    "until": ("2024-05-06T07:08:24Z",),
+}
+
+
+def test_every_combination_of_filters_with_its_pages(api: Api, database: Database) -> None:
+    for device_id in FIELDS["device_id"]:
+        api.add_device(device_id)
+    with database.write() as tx:
+        add_some_alerts(tx)
+    everything = api.get("/alerts")["items"]
+    assert {alert["state"] for alert in everything} == set(FIELDS["state"])
+    found = set()
+    for values in itertools.product(*((None, *options) for options in FIELDS.values())):
+        query = {name: value for name, value in zip(FIELDS, values, strict=True) if value is not None}
+        expected = [alert["id"] for alert in everything if matches(alert, query)]
+        assert listed(api, query, limit=5) == expected, query
+        found.add(len(expected))
+    assert {0, 1, len(everything)} <= found
+
+
+def add_some_alerts(tx: WriteSession) -> None:
+    """Add alerts of all sorts, a second apart; of a device and kind only the last may be unresolved."""
+    of_device = dict(tx.all(lambda name, pk: (name, pk), sa.select(tables.devices.c.id, tables.devices.c.pk)))
+    names = ("device_id", "kind", "severity")
+    for n, (device, kind, severity) in enumerate(itertools.product(*(FIELDS[name] for name in names))):
+        at = NOW + timedelta(seconds=3 * n)
+        pk = alerts.raise_(tx, of_device[device], alerts.Finding(kind, severity, "x", {}), at)
+        last = FIELDS["state"][n // 2 % 2] if severity == "critical" else "resolved"
+        if last == "acknowledged":
+            alerts.acknowledge(tx, pk, "x", None, at)
+        if last == "resolved":
+            alerts.resolve(tx, pk, "x", None, at)
+
+
+def matches(alert: dict[str, Any], query: dict[str, Any]) -> bool:
+    same = all(alert[name] == value for name, value in query.items() if name not in {"since", "until"})
+    after = alert["opened_at"] >= query.get("since", "")
+    return same and after and alert["opened_at"] < query.get("until", "9")
+
+
+def listed(api: Api, query: dict[str, Any], limit: int) -> list[int]:
+    """Give the ids on all pages."""
+    ids: list[int] = []
+    cursor: dict[str, str] = {}
+    while True:
+        page = api.get("/alerts", params={**query, **cursor, "limit": limit})
+        ids += [alert["id"] for alert in page["items"]]
+        if page["next_cursor"] is None:
+            return ids
+        cursor = {"cursor": page["next_cursor"]}
+
+
 def devices(page: dict[str, list[dict[str, Any]]]) -> list[str]:
     return [alert["device_id"] for alert in page["items"]]
 
@@ -171,7 +240,9 @@ def find_fault(database: Database, fault: core.Fault) -> None:
     event = core.Event(500.0, core.EventKind.FAULT, None, None, None, None, "what is wrong", None, 490.0, None, fault)
     with database.write() as tx:
         pk = tx.value(sa.select(tables.devices.c.pk))
-        alerting.raise_for(tx, pk, event, Where("a", NOW, None), NOW)
+        finding = findings.finding(event, Where("a", NOW, None))
+        assert finding is not None
+        alerts.raise_(tx, pk, finding, NOW)
 
 
 @pytest.mark.parametrize("fault", core.Fault)
@@ -196,3 +267,47 @@ def test_a_recurrence_raises_the_count(moved: Device, api: Api, database: Databa
     (alert,) = api.get("/alerts")["items"]
     assert (alert["count"], alert["message"], alert["state"]) == (2, "moved again", "open")
     assert (alert["opened_at"], alert["updated_at"]) == (first["opened_at"], "2024-05-06T07:08:14Z")
+
+
+def recur(database: Database, at: datetime, reopen_since: datetime | None, kind: str = "gps_lost") -> int:
+    with database.write() as tx:
+        pk = tx.value(sa.select(tables.devices.c.pk))
+        return alerts.raise_(tx, pk, alerts.Finding(kind, "warning", f"at {at:%H:%M}", {}), at, reopen_since)
+
+
+HOUR = timedelta(hours=1)
+
+
+@pytest.mark.parametrize(
+    ("automatically", "after", "again"), [(True, HOUR, True), (True, HOUR * 1.01, False), (False, HOUR / 60, False)]
+)
+def test_an_alert_that_was_over_by_itself_is_opened_again_for_a_while(
+    api: Api, database: Database, automatically: bool, after: timedelta, again: bool
+) -> None:
+    api.add_device()
+    first = recur(database, NOW, None)
+    with database.write() as tx:
+        alerts.acknowledge(tx, first, "Kim", "I see", NOW)
+        alerts.resolve(tx, first, "service", "over", NOW, automatically)
+    later = NOW + after
+    second = recur(database, later, later - HOUR)
+    assert (second == first) is again
+    shown = api.get(f"/alerts/{second}")
+    assert (shown["state"], shown["count"]) == ("open", 2 if again else 1)
+    assert (shown["resolved_at"], shown["resolved_by"], shown["resolve_note"]) == (None, None, None)
+    assert shown["message"] == f"at {later:%H:%M}"
+    assert shown["acknowledged_by"] == ("Kim" if again else None)
+    assert len(api.get("/alerts")["items"]) == (1 if again else 2)
+
+
+def test_only_the_newest_of_a_kind_is_opened_again(api: Api, database: Database) -> None:
+    api.add_device()
+    with_note = {"note": "by hand"}
+    first = recur(database, NOW, None)
+    with database.write() as tx:
+        alerts.resolve(tx, first, "service", "over", NOW, True)
+    second = recur(database, NOW, None)
+    api.post(f"/alerts/{second}/resolve", with_note)
+    other = recur(database, NOW, None, "clock_fault")
+    third = recur(database, NOW, NOW - HOUR)
+    assert len({first, second, other, third}) == 4

@@ -105,6 +105,22 @@ def test_a_mounting_is_read_until_it_changes(confirmed: Device) -> None:
     confirmed.api.call("GET", path, 404, headers={"If-None-Match": tag})
 
 
+def test_an_installation_is_read_until_it_changes(device: Device) -> None:
+    path = f"/devices/{device.id}/installation"
+    first = device.api.call("GET", path, 200)
+    tag = first.headers["etag"]
+    unchanged = device.api.call("GET", path, 304, headers={"If-None-Match": tag})
+    assert (unchanged.content, unchanged.headers["etag"]) == (b"", tag)
+    device.send(plain().chunks[0], 0, expect=200)
+    changed = device.api.call("GET", path, 200, headers={"If-None-Match": tag})
+    assert changed.json()["revision"] > first.json()["revision"]
+    assert changed.headers["etag"] != tag
+    device.admin.call("DELETE", f"/devices/{device.id}", 204)
+    again = device.admin.add_device(device.id)
+    assert again.installation()["revision"] == first.json()["revision"]
+    again.api.call("GET", path, 200, headers={"If-None-Match": tag})
+
+
 def test_no_mounting_yet_is_a_problem_that_says_so(device: Device) -> None:
     problem = device.get("mount", 404)
     assert problem["detail"] == "No mounting is confirmed yet."

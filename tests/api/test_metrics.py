@@ -12,6 +12,7 @@ from starlette.testclient import TestClient
 from api import metrics, schemas
 from api.app import create_app
 from api.services import fleet, publishing, webhooks
+from api.services.auditing import SERVICE
 from api.services.context import Context
 from api.services.monitoring import KEPT, Fleet
 from api.settings import Settings
@@ -139,14 +140,14 @@ def test_the_fleet_is_counted_now_and_then(context: Context, settings: Settings,
 
 def test_messages_to_webhooks_are_counted_until_they_are_delivered(context: Context) -> None:
     fleet.register(context, schemas.DeviceDraft(id="box", name="box"))
-    webhook = webhooks.add(context, schemas.WebhookDraft(name="a", url="http://127.0.0.1:9/"), "tests")
+    webhook = webhooks.add(context, SERVICE, schemas.WebhookDraft(name="a", url="http://127.0.0.1:9/"))
     assert b"livella_webhook_backlog 0.0" in Fleet(context).render()
     with context.database.write() as tx:
         finding = alerts.Finding("device_loose", "critical", "The device is loose.", {})
         raised = alerts.raise_(tx, devices.exists(tx, "box") or 0, finding, context.clock())
         publishing.alert_changed(tx, raised, context.clock())
     assert b"livella_webhook_backlog 1.0" in Fleet(context).render()
-    webhooks.remove(context, webhook.webhook.id)
+    webhooks.remove(context, SERVICE, webhook.webhook.id)
     assert b"livella_webhook_backlog 0.0" in Fleet(context).render()
 
 

@@ -1,5 +1,6 @@
 import os
 from collections.abc import Iterator
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -71,3 +72,36 @@ def test_what_cannot_be_done(arguments: list[object]) -> None:
     done = keys(*arguments)
     assert done.exit_code == 2
     assert "livella_" not in done.output
+
+
+def test_a_key_that_ends(admin: Api) -> None:
+    made = keys("create", "--role", "installer", "--name", "Ida", "--expires-days", 30).stdout.strip()
+    admin.as_(made).get("/devices")
+    listed = keys("list").stdout
+    assert made[:12] in listed
+    assert made[:13] not in listed
+    (entry,) = [key for key in admin.get("/keys")["items"] if key["name"] == "Ida"]
+    assert entry["created_by"] == "command line"
+    made_at, expires_at = (datetime.fromisoformat(entry[name]) for name in ("created_at", "expires_at"))
+    assert abs(expires_at - made_at - timedelta(days=30)) < timedelta(seconds=1)
+    assert f"{expires_at:%Y-%m-%d %H:%M}Z" in listed
+
+
+def test_the_list_tells_the_last_use_and_steers_no_terminal(admin: Api) -> None:
+    keys("create", "--role", "manager", "--name", "\x1b[31mred")
+    line = next(line for line in keys("list").stdout.splitlines() if "manager" in line)
+    assert "\x1b" not in line
+    assert r"\x1b[31mred" in line
+
+
+def test_what_is_done_here_is_in_the_audit_trail(admin: Api) -> None:
+    keys("create", "--role", "manager", "--name", "Max")
+    keys("revoke", 2)
+    done = [
+        (e["action"], e["target"], e["role"]) for e in admin.get("/audit", params={"actor": "command line"})["items"]
+    ]
+    assert done == [
+        ("key.revoke", "keys/2", "none"),
+        ("key.create", "keys/2", "none"),
+        ("key.create", "keys/1", "none"),
+    ]

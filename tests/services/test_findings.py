@@ -52,6 +52,7 @@ def test_a_moved_device() -> None:
         "evidence": {"t": [500, 505, 510], "value": [0, 25, 61.5], "threshold": 60.0},
         "fault": None,
         "reason": None,
+        **dict.fromkeys(("seen", "threshold", "unit")),
     }
 
 

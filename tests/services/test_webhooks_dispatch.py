@@ -5,6 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 from pathlib import Path
+from typing import get_args
 
 import pytest
 from pydantic import SecretStr
@@ -12,7 +13,8 @@ from sqlalchemy.dialects import sqlite
 from standardwebhooks import Webhook as Library
 
 from api import schemas
-from api.services import fleet, publishing, retention, webhooks, webhooks_queue
+from api.services import alerting, fleet, publishing, retention, webhooks, webhooks_queue
+from api.services.auditing import SERVICE
 from api.services.context import Context
 from api.services.webhooks_dispatch import CLAIM, Dispatcher
 from api.services.webhooks_sending import Sender, wait_asked_for
@@ -50,7 +52,7 @@ class World:
         self.context = context
         self.sender = sender
         self.clock = clock
-        made = webhooks.add(context, schemas.WebhookDraft(name="a", url=url), "tests")
+        made = webhooks.add(context, SERVICE, schemas.WebhookDraft(name="a", url=url))
         self.pk, self.secret = made.webhook.id, made.secret
         self.numbers: dict[str, int] = {}
 
@@ -133,11 +135,11 @@ def test_nothing_is_stored_for_an_alert_that_is_rolled_back(world: World) -> Non
 
 
 def test_only_wanted_alerts_are_told(world: World) -> None:
-    webhooks.edit(world.context, world.pk, {"kinds": ["gps_lost"], "severities": ["warning", "critical"]})
+    webhooks.edit(world.context, SERVICE, world.pk, {"kinds": ["gps_lost"], "severities": ["warning", "critical"]})
     world.alert("box-1", "gps_lost", "info")
     world.alert("box-1", "device_loose", "critical")
     world.alert("box-2", "gps_lost", "warning")
-    webhooks.edit(world.context, world.pk, {"active": False})
+    webhooks.edit(world.context, SERVICE, world.pk, {"active": False})
     world.alert("box-2", "gps_lost", "warning")
     assert [delivery.device_id for delivery in world.deliveries()] == ["box-2"]
 
@@ -158,6 +160,32 @@ def test_every_change_has_its_type(world: World, receiver: Receiver) -> None:
     world.dispatch()
     expected = ["opened", "updated", "acknowledged", "updated", "resolved"]
     assert [call.json["type"] for call in receiver.calls] == [f"alert.{word}" for word in expected]
+
+
+def test_an_alert_that_is_opened_again_is_told_as_opened(world: World, receiver: Receiver) -> None:
+    finding, device = Finding("gps_lost", "warning", "No GPS.", {}), world.numbers["box-1"]
+    for step in ("raise", "raise", "end", "raise", "raise", "end"):
+        world.clock.advance(60)
+        with world.context.database.write() as tx:
+            if step == "raise":
+                alerting.raise_(tx, world.context, device, finding, world.clock())
+            else:
+                alerting.end(tx, device, [finding.kind], "There is GPS again.", world.clock())
+    world.dispatch()
+    expected = ["opened", "updated", "resolved", "opened", "updated", "resolved"]
+    assert [call.json["type"] for call in receiver.calls] == [f"alert.{word}" for word in expected]
+    assert [call.json["data"]["count"] for call in receiver.calls] == [1, 2, 2, 3, 4, 4]
+    assert len({call.json["data"]["id"] for call in receiver.calls}) == 1
+
+
+@pytest.mark.parametrize("kind", get_args(schemas.AlertKind))
+def test_every_kind_reaches_webhooks(world: World, receiver: Receiver, kind: str) -> None:
+    with world.context.database.write() as tx:
+        finding = Finding(kind, "warning", "It is so.", {})
+        alerting.raise_(tx, world.context, world.numbers["box-1"], finding, world.clock())
+    world.dispatch()
+    (call,) = receiver.calls
+    assert (call.json["type"], call.json["data"]["kind"]) == ("alert.opened", kind)
 
 
 def test_the_schedule_of_standard_webhooks_then_given_up(world: World, receiver: Receiver) -> None:
@@ -187,7 +215,7 @@ def test_what_was_given_up_can_be_sent_again(world: World, receiver: Receiver) -
     assert [delivery.state for delivery in world.deliveries()] == ["failed", "failed"]
     receiver.answer = Answer()
     receiver.calls.clear()
-    assert webhooks.redeliver(world.context, world.pk).deliveries == 2
+    assert webhooks.redeliver(world.context, SERVICE, world.pk).deliveries == 2
     assert world.dispatch() == 2
     assert [call.json["data"]["count"] for call in receiver.calls] == [1, 2]
     assert world.webhook().failing_since is None
@@ -299,7 +327,7 @@ def test_gone_switches_off(world: World, receiver: Receiver) -> None:
     assert not world.webhook().active
     assert [delivery.state for delivery in world.deliveries()] == ["failed", "pending"]
     receiver.answer = Answer()
-    webhooks.edit(world.context, world.pk, {"active": True})
+    webhooks.edit(world.context, SERVICE, world.pk, {"active": True})
     assert world.dispatch() == 1
 
 
@@ -352,14 +380,14 @@ def test_what_still_waits_is_not_removed_however_old(world: World, receiver: Rec
     world.clock.advance(91 * DAY)
     retention.tidy(world.context)
     receiver.answer = Answer()
-    webhooks.edit(world.context, world.pk, {"active": True})
+    webhooks.edit(world.context, SERVICE, world.pk, {"active": True})
     assert world.dispatch() == 1
     assert [delivery.state for delivery in world.deliveries()] == ["delivered"]
 
 
 def test_a_removed_webhook_takes_its_deliveries_along(world: World) -> None:
     world.alert("box-1")
-    webhooks.remove(world.context, world.pk)
+    webhooks.remove(world.context, SERVICE, world.pk)
     assert world.dispatch() == 0
     world.alert("box-1")
     with world.context.database.read() as tx:

@@ -56,6 +56,7 @@ def test_nothing_is_lost_on_the_way_up_or_down(old_url: str, version: str) -> No
     database = Database(old_url)
     with database.write() as tx:
         before = contents(tx)
+    before["meta"] = [row for row in before["meta"] if row["name"] != "cookie_secret"]  # sign-ins are in a table now
     upgrade(database)
     with database.write() as tx:
         after = contents(tx)

@@ -64,7 +64,7 @@ export interface paths {
         post: operations["sign_in"];
         /**
          * Sign Out
-         * @description Sign out.
+         * @description Sign out: the cookie opens nothing any more, wherever it may have got to.
          */
         delete: operations["sign_out"];
         options?: never;
@@ -125,6 +125,26 @@ export interface paths {
          *     calibration corrects: restart the installation afterwards.
          */
         patch: operations["edit_device"];
+        trace?: never;
+    };
+    "/api/v1/devices/{device_id}/key": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Rotate Device Key
+         * @description Make a new key for a device, shown only in this answer. Every key it had is revoked at once.
+         */
+        post: operations["rotate_device_key"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
         trace?: never;
     };
     "/api/v1/devices/{device_id}/chunks": {
@@ -548,6 +568,72 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/keys": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Keys
+         * @description List the keys in the order in which they were made: what they open, not the keys themselves.
+         */
+        get: operations["list_keys"];
+        put?: never;
+        /**
+         * Create Key
+         * @description Make a key. It is shown only in this answer.
+         */
+        post: operations["create_key"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/keys/{key_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Revoke Key
+         * @description Revoke a key; whoever signed in with it is signed out.
+         *
+         *     409 `last-admin-key`: nobody could make another admin key afterwards.
+         */
+        delete: operations["revoke_key"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Audit
+         * @description List who did what, newest first. Uploads are not in it.
+         */
+        get: operations["list_audit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -682,6 +768,44 @@ export interface components {
             yaw: number;
         };
         /**
+         * AuditEntry
+         * @description Something somebody did.
+         */
+        AuditEntry: {
+            /** Id */
+            id: number;
+            /**
+             * At
+             * Format: date-time
+             */
+            at: string;
+            /**
+             * Actor
+             * @description Name of the key it was done with, at that time.
+             */
+            actor: string;
+            /** Key Id */
+            key_id: number | null;
+            /** Role */
+            role: ("device" | "installer" | "manager" | "admin") | "none";
+            /**
+             * Action
+             * @description `resource.verb`.
+             */
+            action: string;
+            /**
+             * Target
+             * @description Path of what was changed, below `/api/v1/`.
+             */
+            target: string | null;
+            /** Detail */
+            detail: {
+                [key: string]: unknown;
+            } | null;
+            /** Request Id */
+            request_id: string | null;
+        };
+        /**
          * Chunk
          * @description Receipt of a chunk.
          */
@@ -719,6 +843,47 @@ export interface components {
              * @description What the sender should know, such as columns that were ignored.
              */
             notices: string[];
+        };
+        /**
+         * CreatedKey
+         * @description A key just made, which is shown only now.
+         */
+        CreatedKey: {
+            /** Id */
+            id: number;
+            /**
+             * Prefix
+             * @description How it begins; null of keys made long ago or chosen by an operator.
+             */
+            prefix: string | null;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "device" | "installer" | "manager" | "admin";
+            /** Name */
+            name: string;
+            /** Device Id */
+            device_id: string | null;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /**
+             * Created By
+             * @description Name of the key it was made with.
+             */
+            created_by: string | null;
+            /**
+             * Last Used At
+             * @description Some minutes behind at most.
+             */
+            last_used_at: string | null;
+            /** Expires At */
+            expires_at: string | null;
+            /** Key */
+            key: string;
         };
         /**
          * Device
@@ -979,6 +1144,68 @@ export interface components {
             revision: number;
         };
         /**
+         * Key
+         * @description A key, without its secret, which is not stored.
+         */
+        Key: {
+            /** Id */
+            id: number;
+            /**
+             * Prefix
+             * @description How it begins; null of keys made long ago or chosen by an operator.
+             */
+            prefix: string | null;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "device" | "installer" | "manager" | "admin";
+            /** Name */
+            name: string;
+            /** Device Id */
+            device_id: string | null;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            created_at: string;
+            /**
+             * Created By
+             * @description Name of the key it was made with.
+             */
+            created_by: string | null;
+            /**
+             * Last Used At
+             * @description Some minutes behind at most.
+             */
+            last_used_at: string | null;
+            /** Expires At */
+            expires_at: string | null;
+        };
+        /**
+         * KeyDraft
+         * @description A key to make.
+         */
+        KeyDraft: {
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "device" | "installer" | "manager" | "admin";
+            /** Name */
+            name: string;
+            /**
+             * Device Id
+             * @description Only with the role device: the device the key is for.
+             */
+            device_id?: string | null;
+            /**
+             * Expires At
+             * @description When it ends; null: when it is revoked.
+             */
+            expires_at?: string | null;
+        };
+        /**
          * Limits
          * @description What an estimate's 1 sigma must be below before a mounting is confirmed, degrees.
          */
@@ -1058,10 +1285,30 @@ export interface components {
              */
             next_cursor: string | null;
         };
+        /** Page[AuditEntry] */
+        Page_AuditEntry_: {
+            /** Items */
+            items: components["schemas"]["AuditEntry"][];
+            /**
+             * Next Cursor
+             * @description Give it as `cursor` to get the next page; null on the last page.
+             */
+            next_cursor: string | null;
+        };
         /** Page[Device] */
         Page_Device_: {
             /** Items */
             items: components["schemas"]["Device"][];
+            /**
+             * Next Cursor
+             * @description Give it as `cursor` to get the next page; null on the last page.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[Key] */
+        Page_Key_: {
+            /** Items */
+            items: components["schemas"]["Key"][];
             /**
              * Next Cursor
              * @description Give it as `cursor` to get the next page; null on the last page.
@@ -1714,6 +1961,37 @@ export interface operations {
             };
         };
     };
+    rotate_device_key: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                device_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RegisteredDevice"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     upload_chunk: {
         parameters: {
             query: {
@@ -1773,7 +2051,9 @@ export interface operations {
     read_installation: {
         parameters: {
             query?: never;
-            header?: never;
+            header?: {
+                "if-none-match"?: string | null;
+            };
             path: {
                 device_id: string;
             };
@@ -1789,6 +2069,13 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["Installation"];
                 };
+            };
+            /** @description Not modified: nothing has changed since the ETag */
+            304: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description Problem details (RFC 9457) */
             default: {
@@ -2492,6 +2779,146 @@ export interface operations {
                 };
                 content: {
                     "text/event-stream": unknown;
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_keys: {
+        parameters: {
+            query?: {
+                /** @description Items on a page. */
+                limit?: number;
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_Key_"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_key: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["KeyDraft"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CreatedKey"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revoke_key: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                key_id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_audit: {
+        parameters: {
+            query?: {
+                /** @description Name of the key it was done with. */
+                actor?: string | null;
+                /** @description Such as `device.edit`. */
+                action?: string | null;
+                /** @description Such as `devices/van-7`. */
+                target?: string | null;
+                /** @description Done at or after. */
+                since?: string | null;
+                /** @description Done before. */
+                until?: string | null;
+                /** @description Items on a page. */
+                limit?: number;
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_AuditEntry_"];
                 };
             };
             /** @description Problem details (RFC 9457) */
