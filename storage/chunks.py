@@ -7,6 +7,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import chunk_waits, chunks, devices, sessions
+from storage.prepared import Prepared
 
 APPLIED, WAITING = "applied", "waiting"
 
@@ -44,14 +45,14 @@ class Waiting(NamedTuple):
 _receipt = [chunks.c[name] for name in Receipt._fields]
 _body = [chunks.c[name] for name in Body._fields]
 _this = (chunks.c.session_pk == sa.bindparam("of_session_pk")) & (chunks.c.seq == sa.bindparam("of_seq"))
-_find = sa.select(*_receipt).where(_this)
+_find = Prepared(sa.select(*_receipt).where(_this))
 _find_waiting = sa.select(*_receipt, *_body).where(_this)
-_add = sa.insert(chunks)
+_add = Prepared(sa.insert(chunks))
 _settle = sa.update(chunks).where(_this)
 _waiting = sa.select(sa.func.count(), sa.func.min(chunks.c.seq), sa.func.min(chunks.c.received_at)).where(
     chunks.c.session_pk == sa.bindparam("session_pk"), chunk_waits
 )
-_sessions_waiting = (
+_sessions_waiting = Prepared(
     sa.select(sessions.c.pk)
     .where(
         sessions.c.device_pk == sa.bindparam("device_pk"),
@@ -82,7 +83,7 @@ def find_waiting(tx: ReadSession, session_pk: int, seq: int) -> tuple[Receipt, B
 
 def add(tx: WriteSession, receipt: Receipt, body: Body | None = None) -> None:
     """Store a receipt, with the bytes when the chunk has to wait."""
-    tx.execute(_add, **receipt._asdict(), **({} if body is None else body._asdict()))
+    tx.run(_add, **receipt._asdict(), **({} if body is None else body._asdict()))
 
 
 def settle(tx: WriteSession, receipt: Receipt) -> None:

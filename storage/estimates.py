@@ -8,6 +8,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import estimates, microseconds, sessions
+from storage.prepared import Prepared
 
 
 class Mark(NamedTuple):
@@ -28,7 +29,7 @@ class Block(NamedTuple):
     rows: bytes
 
 
-_add = sa.insert(estimates)
+_add = Prepared(sa.insert(estimates))
 _marks = (
     sa.select(*(estimates.c[name] for name in Mark._fields))
     .join_from(estimates, sessions)
@@ -56,7 +57,7 @@ def add(
     now: datetime,
 ) -> None:
     """Append a block: `t` its first and last time on the session's clock, `mark` its rows and stage changes."""
-    tx.execute(
+    tx.run(
         _add,
         session_pk=session_pk,
         t_first=t[0],

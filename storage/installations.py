@@ -10,6 +10,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import alert_unresolved, alerts, devices, installations, sessions
+from storage.prepared import Prepared
 
 
 class Installation(NamedTuple):
@@ -27,6 +28,8 @@ class Installation(NamedTuple):
     status: dict[str, Any]
     last_data_at: datetime | None
     revision: int
+    accelerometer_calibration: dict[str, Any] | None = None
+    """of the device, where it is kept"""
 
 
 class Beside(NamedTuple):
@@ -37,19 +40,25 @@ class Beside(NamedTuple):
     open_alerts: int
 
 
-_columns = [installations.c[name] for name in Installation._fields]
-_of_id = sa.select(*_columns).join_from(installations, devices).where(devices.c.id == sa.bindparam("id"))
-_lock = _of_id.with_for_update(key_share=True, of=installations)
-_get = sa.select(*_columns).where(installations.c.device_pk == sa.bindparam("device_pk"))
-_beside = sa.select(
+_own = Installation._fields[:-1]
+_select = sa.select(*(installations.c[name] for name in _own), devices.c.accelerometer_calibration).join_from(
+    installations, devices
+)
+_of_id = _select.where(devices.c.id == sa.bindparam("id"))
+_find = Prepared(_of_id)
+_lock = Prepared(_of_id.with_for_update(key_share=True, of=installations))
+_get = _select.where(installations.c.device_pk == sa.bindparam("device_pk"))
+_show = sa.select(
     sa.select(sessions.c.started_at).where(sessions.c.pk == sa.bindparam("since_session_pk")).scalar_subquery(),
     sa.select(sa.func.count())
     .where(alerts.c.device_pk == sa.bindparam("device_pk"), alert_unresolved)
     .scalar_subquery(),
 )
+_beside = Prepared(_show)
 _add = sa.insert(installations)
-_save = sa.update(installations).where(installations.c.device_pk == sa.bindparam("of_device_pk"))
-_touch = _save.values(revision=installations.c.revision + 1)
+_update = sa.update(installations).where(installations.c.device_pk == sa.bindparam("of_device_pk"))
+_save = Prepared(_update)
+_touch = _update.values(revision=installations.c.revision + 1)
 
 
 def lock(tx: WriteSession, device_id: str) -> Installation | None:
@@ -59,7 +68,7 @@ def lock(tx: WriteSession, device_id: str) -> Installation | None:
 
 def find(tx: ReadSession, device_id: str) -> Installation | None:
     """Find the installation of a device by the device's id."""
-    return tx.one(Installation, _of_id, id=device_id)
+    return tx.one(Installation, _find, id=device_id)
 
 
 def get(tx: ReadSession, device_pk: int) -> Installation | None:
@@ -70,18 +79,22 @@ def get(tx: ReadSession, device_pk: int) -> Installation | None:
 def beside(tx: ReadSession, row: Installation) -> Beside:
     """Give what is shown with an installation."""
     values = {"since_session_pk": row.since_session_pk, "device_pk": row.device_pk}
-    return Beside(*tx.connection.execute(_beside, values).one())
+    return tx.all(Beside, _beside, **values)[0]
 
 
 def add(tx: WriteSession, installation: Installation) -> None:
     """Store the installation of a new device."""
-    tx.execute(_add, **installation._asdict())
+    tx.execute(_add, **_values(installation))
 
 
 def save(tx: WriteSession, installation: Installation) -> None:
     """Store what evolves."""
-    values = installation._asdict()
-    tx.execute(_save, of_device_pk=values.pop("device_pk"), **values)
+    values = _values(installation)
+    tx.run(_save, of_device_pk=values.pop("device_pk"), **values)
+
+
+def _values(installation: Installation) -> dict[str, Any]:
+    return dict(zip(_own, installation, strict=False))
 
 
 def touch(tx: WriteSession, device_pk: int) -> None:

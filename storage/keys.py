@@ -7,6 +7,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import api_keys, devices
+from storage.prepared import Prepared
 
 
 class Key(NamedTuple):
@@ -23,7 +24,7 @@ class Key(NamedTuple):
 _select = sa.select(
     api_keys.c.pk, api_keys.c.digest, api_keys.c.role, api_keys.c.name, api_keys.c.device_pk, devices.c.id
 ).select_from(api_keys.outerjoin(devices))
-_by_digest = _select.where(api_keys.c.digest == sa.bindparam("digest"))
+_by_digest = Prepared(_select.where(api_keys.c.digest == sa.bindparam("digest")))
 _every = _select.order_by(api_keys.c.pk)
 _by_pk = _select.where(api_keys.c.pk == sa.bindparam("pk"))
 _of_role = sa.select(api_keys.c.pk).where(api_keys.c.role == sa.bindparam("role")).limit(1)
