@@ -12,6 +12,7 @@ import sqlalchemy as sa
 from sqlalchemy import event
 from sqlalchemy.engine import Connection, CursorResult, Engine, make_url
 
+from storage import prepared
 from storage.file_lock import FileLock
 from storage.group_commit import GroupCommit
 from storage.prepared import Prepared
@@ -114,7 +115,7 @@ def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:
 
         @event.listens_for(made, "begin")
         def _begin(connection: Connection) -> None:
-            connection.exec_driver_sql(begin)
+            prepared.execute(connection, begin)
 
         return made
 

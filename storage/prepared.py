@@ -49,10 +49,11 @@ class Prepared:
         form = self._translated.get(names := tuple(values))
         if form is None:
             form = self._translated[names] = _translate(self.statement, connection.dialect, names)
-        return [form.shape(row) for row in _execute(connection, form.sql, form.bind(values))]
+        return [form.shape(row) for row in execute(connection, form.sql, form.bind(values))]
 
 
-def _execute(connection: Connection, sql: str, parameters: list[Any]) -> list[Any]:
+def execute(connection: Connection, sql: str, parameters: Sequence[Any] = ()) -> list[Any]:
+    """Give SQLite's driver a statement of the connection's transaction, and the rows that it gives."""
     driver: Any = connection.connection.dbapi_connection
     try:
         found: list[Any] = driver.execute(sql, parameters).fetchall()
