@@ -19,6 +19,11 @@ MAGIC = b"LVLA"
 VERSION = 2
 _HEADER = struct.Struct("<4sH8s")
 _ROWS, _COLUMNS = np.tril_indices(STATES)
+_KEPT = _ROWS * STATES + _COLUMNS
+"""Which elements of a covariance are stored"""
+_PLACES = np.zeros((STATES, STATES), np.int64)
+"""and where each element is among them."""
+_PLACES[_ROWS, _COLUMNS] = _PLACES[_COLUMNS, _ROWS] = np.arange(_ROWS.size)
 
 
 def _packed(dtype: np.dtype[np.void]) -> np.dtype[np.void]:
@@ -76,7 +81,7 @@ def _pack(part: NDArray[np.void], dtype: np.dtype[np.void]) -> NDArray[np.void]:
         return part
     packed = np.empty(part.shape, dtype)
     _before_covariance(packed)[:] = _before_covariance(part)
-    packed["covariance"] = part["covariance"][:, _ROWS, _COLUMNS]
+    packed["covariance"] = part["covariance"].reshape(part.size, -1)[:, _KEPT]
     return packed
 
 
@@ -85,8 +90,7 @@ def _unpack(packed: NDArray[np.void], dtype: np.dtype[np.void]) -> NDArray[np.vo
         return independent(packed.tobytes(), dtype)
     part = np.empty(packed.shape, dtype)
     _before_covariance(part)[:] = _before_covariance(packed)
-    covariance = part["covariance"]
-    covariance[:, _ROWS, _COLUMNS] = covariance[:, _COLUMNS, _ROWS] = packed["covariance"]
+    part["covariance"] = packed["covariance"][:, _PLACES]
     return part
 
 
