@@ -27,7 +27,7 @@ from core.events import (
 )
 from core.params import Parameters, as_record
 from core.samples import Samples
-from core.state import LOOKS, State, empty_clock, empty_state
+from core.state import LOOKS, State, empty_clock, empty_state, independent
 
 Floats = NDArray[np.float64]
 
@@ -139,10 +139,10 @@ def status(params: Parameters, state: State) -> Status:
     row = np.zeros(_ROW)
     known = _kernel.describe(
         as_record(params)[0],
-        state.clock.copy()[0],
+        independent(state.clock.tobytes(), state.clock.dtype)[0],
         state.coarse[0],
         state.filter[0],
-        state.settling.copy()[0],
+        independent(state.settling.tobytes(), state.settling.dtype)[0],
         state.verification[0],
         row,
     )

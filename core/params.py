@@ -6,6 +6,7 @@ prior takes a state out of the filter: the `thesis` preset is the 9-state filter
 
 import math
 from dataclasses import dataclass, field, fields, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -379,8 +380,12 @@ PRESETS = {"default": DEFAULT, "thesis": THESIS}
 _STAGES = ("epoch", "coarse", "filter", "settling", "verification", "change", "fault")
 
 
+@lru_cache(maxsize=32)
 def as_record(params: Parameters) -> NDArray[np.void]:
-    """Give the parameters as a structured array of shape (1,) for the kernel, names `stage_parameter`."""
+    """Give the parameters as a structured array of shape (1,) for the kernel, names `stage_parameter`.
+
+    The same array for the same parameters: numba looks a type up anew for every new dtype, which takes long.
+    """
     values: dict[str, float | bool | int] = {"report_interval": params.report_interval}
     for stage in _STAGES:
         group = getattr(params, stage)

@@ -43,13 +43,13 @@ def multiply(q: ArrayLike, p: ArrayLike) -> Floats:
 
 def matrix(q: ArrayLike) -> Floats:
     """Rotation matrix (..., 3, 3) of a unit quaternion (thesis C.3, scalar first)."""
-    w, x, y, z = np.moveaxis(np.asarray(q, np.float64), -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    q = np.asarray(q, np.float64)
+    w, x, y, z = (q[..., i] for i in range(4))
+    r = np.empty((*q.shape[:-1], 3, 3))  # filled one by one: stacking takes ten times as long for one rotation
+    r[..., 0, 0], r[..., 0, 1], r[..., 0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+    r[..., 1, 0], r[..., 1, 1], r[..., 1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+    r[..., 2, 0], r[..., 2, 1], r[..., 2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+    return r
 
 
 def from_matrix(r: ArrayLike) -> Floats:

@@ -80,7 +80,7 @@ class Samples:
         ):
             raise SampleError("the columns have different lengths")
         _check_finite(np.isfinite(t_), "time is not a finite number")
-        _check_finite(np.isfinite(f_s_).all(axis=1), "specific force is not a finite number")
+        _check_finite(np.isfinite(f_s_), "specific force is not a finite number")
         _check_order(t_)
         if row.size and (row[0] < 0 or row[-1] >= n or np.any(np.diff(row) <= 0)):
             raise SampleError("fix rows must be strictly increasing indices of samples")
@@ -103,14 +103,13 @@ class Samples:
         )
 
 
-def _check_finite(finite: ArrayLike, message: str) -> None:
-    bad = np.flatnonzero(np.logical_not(finite))
-    if bad.size:
-        raise SampleError(message, int(bad[0]))
+def _check_finite(finite: NDArray[np.bool_], message: str) -> None:
+    if not finite.all():
+        raise SampleError(message, int(np.argwhere(~finite)[0, 0]))
 
 
 def _check_order(t: Floats) -> None:
-    back = np.flatnonzero(t[1:] < t[:-1])
-    if back.size:
-        row = int(back[0]) + 1
+    back = t[1:] < t[:-1]
+    if back.any():
+        row = int(np.argmax(back)) + 1
         raise SampleError(f"time runs backwards, from {t[row - 1]:.6g} s to {t[row]:.6g} s", row)

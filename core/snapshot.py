@@ -13,12 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core._kernel import STATES
-from core.state import FILTER, LAYOUT, State, empty_state
+from core.state import FILTER, LAYOUT, State, empty_state, independent
 
 MAGIC = b"LVLA"
 VERSION = 2
 _HEADER = struct.Struct("<4sH8s")
 _ROWS, _COLUMNS = np.tril_indices(STATES)
+_KEPT = _ROWS * STATES + _COLUMNS
+"""Which elements of a covariance are stored"""
+_PLACES = np.zeros((STATES, STATES), np.int64)
+"""and where each element is among them."""
+_PLACES[_ROWS, _COLUMNS] = _PLACES[_COLUMNS, _ROWS] = np.arange(_ROWS.size)
 
 
 def _packed(dtype: np.dtype[np.void]) -> np.dtype[np.void]:
@@ -74,20 +79,22 @@ def decode(data: bytes) -> State:
 def _pack(part: NDArray[np.void], dtype: np.dtype[np.void]) -> NDArray[np.void]:
     if part.dtype == dtype:
         return part
-    packed = np.zeros(part.shape, dtype)
-    for name in dtype.names or ():
-        packed[name] = part[name][:, _ROWS, _COLUMNS] if name == "covariance" else part[name]
+    packed = np.empty(part.shape, dtype)
+    _before_covariance(packed)[:] = _before_covariance(part)
+    packed["covariance"] = part["covariance"].reshape(part.size, -1)[:, _KEPT]
     return packed
 
 
 def _unpack(packed: NDArray[np.void], dtype: np.dtype[np.void]) -> NDArray[np.void]:
     if packed.dtype == dtype:
-        return packed.copy()
-    part = np.zeros(packed.shape, dtype)
-    for name in dtype.names or ():
-        if name == "covariance":
-            part[name][:, _ROWS, _COLUMNS] = packed[name]
-            part[name][:, _COLUMNS, _ROWS] = packed[name]
-        else:
-            part[name] = packed[name]
+        return independent(packed.tobytes(), dtype)
+    part = np.empty(packed.shape, dtype)
+    _before_covariance(part)[:] = _before_covariance(packed)
+    part["covariance"] = packed["covariance"][:, _PLACES]
     return part
+
+
+def _before_covariance(part: NDArray[np.void]) -> NDArray[np.uint8]:
+    """Give the bytes of the fields before the covariance, which is the last one, whichever way it is stored."""
+    size = part.dtype.itemsize - part.dtype["covariance"].itemsize
+    return part.view(np.uint8).reshape(part.size, -1)[:, :size]

@@ -8,6 +8,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import Instant, chunk_waits, chunks, devices, sessions
+from storage.prepared import Prepared
 
 APPLIED, WAITING = "applied", "waiting"
 
@@ -45,9 +46,9 @@ class Waiting(NamedTuple):
 _receipt = [chunks.c[name] for name in Receipt._fields]
 _body = [chunks.c[name] for name in Body._fields]
 _this = (chunks.c.session_pk == sa.bindparam("of_session_pk")) & (chunks.c.seq == sa.bindparam("of_seq"))
-_find = sa.select(*_receipt).where(_this)
+_find = Prepared(sa.select(*_receipt).where(_this))
 _find_waiting = sa.select(*_receipt, *_body).where(_this)
-_add = sa.insert(chunks)
+_add = Prepared(sa.insert(chunks))
 _settle = sa.update(chunks).where(_this)
 _waiting = sa.select(sa.func.count(), sa.func.min(chunks.c.seq), sa.func.min(chunks.c.received_at)).where(
     chunks.c.session_pk == sa.bindparam("session_pk"), chunk_waits
@@ -61,7 +62,7 @@ _bring_back = (
     )
     .values(received_at=sa.bindparam("now", type_=Instant))
 )
-_sessions_waiting = (
+_sessions_waiting = Prepared(
     sa.select(sessions.c.pk)
     .where(
         sessions.c.device_pk == sa.bindparam("device_pk"),
@@ -97,7 +98,7 @@ def find_waiting(tx: ReadSession, session_pk: int, seq: int) -> tuple[Receipt, B
 
 def add(tx: WriteSession, receipt: Receipt, body: Body | None = None) -> None:
     """Store a receipt, with the bytes when the chunk has to wait."""
-    tx.execute(_add, **receipt._asdict(), **({} if body is None else body._asdict()))
+    tx.run(_add, **receipt._asdict(), **({} if body is None else body._asdict()))
 
 
 def settle(tx: WriteSession, receipt: Receipt) -> None:

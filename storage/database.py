@@ -12,8 +12,10 @@ import sqlalchemy as sa
 from sqlalchemy import event
 from sqlalchemy.engine import Connection, CursorResult, Engine, make_url
 
+from storage import prepared
 from storage.file_lock import FileLock
 from storage.group_commit import GroupCommit
+from storage.prepared import Prepared
 
 T = TypeVar("T")
 
@@ -32,13 +34,17 @@ class ReadSession:
         """True on PostgreSQL, False on SQLite."""
         return self.connection.dialect.name == "postgresql"
 
-    def one(self, make: Callable[..., T], statement: sa.Executable, **values: Any) -> T | None:
+    def one(self, make: Callable[..., T], statement: sa.Executable | Prepared, **values: Any) -> T | None:
         """Give the first row as `make(*row)`, or None; `values` are those of the statement's parameters."""
+        if isinstance(statement, Prepared):
+            return next((make(*row) for row in statement.rows(self.connection, values)), None)
         row = self.connection.execute(statement, values).first()
         return None if row is None else make(*row)
 
-    def all(self, make: Callable[..., T], statement: sa.Executable, **values: Any) -> list[T]:
+    def all(self, make: Callable[..., T], statement: sa.Executable | Prepared, **values: Any) -> list[T]:
         """Give every row as `make(*row)`."""
+        if isinstance(statement, Prepared):
+            return [make(*row) for row in statement.rows(self.connection, values)]
         return [make(*row) for row in self.connection.execute(statement, values)]
 
     def value(self, statement: sa.Executable, **values: Any) -> Any:
@@ -52,6 +58,10 @@ class WriteSession(ReadSession):
     def execute(self, statement: sa.Executable, **values: Any) -> CursorResult[Any]:
         """Run an INSERT, UPDATE or DELETE."""
         return self.connection.execute(statement, values)
+
+    def run(self, statement: Prepared, **values: Any) -> None:
+        """Run a prepared INSERT or UPDATE."""
+        statement.rows(self.connection, values)
 
 
 class Database:
@@ -106,7 +116,7 @@ def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:
 
         @event.listens_for(made, "begin")
         def _begin(connection: Connection) -> None:
-            connection.exec_driver_sql(begin)
+            prepared.execute(connection, begin)
 
         return made
 

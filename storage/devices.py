@@ -60,7 +60,6 @@ _select = sa.select(
 ).join_from(devices, installations)
 _find = _select.where(devices.c.id == sa.bindparam("id"))
 _pk = sa.select(devices.c.pk).where(devices.c.id == sa.bindparam("id"))
-_accelerometer_calibration = sa.select(devices.c.accelerometer_calibration).where(devices.c.pk == sa.bindparam("pk"))
 _add = sa.insert(devices).returning(devices.c.pk)
 _edit = sa.update(devices).where(devices.c.pk == sa.bindparam("of_pk"))
 TEXTS = ("id", "name", "vehicle", "notes")
@@ -129,12 +128,6 @@ def _has_stage(device_id: sa.ColumnElement[str], stage: str | None) -> list[sa.C
 def _is_alerted(device_id: sa.ColumnElement[str], wanted: bool | None) -> list[sa.ColumnElement[bool]]:
     alerted = sa.exists().where(alerts.c.device_id == device_id, alert_unresolved)
     return [] if wanted is None else [alerted if wanted else ~alerted]
-
-
-def accelerometer_calibration(tx: ReadSession, pk: int) -> dict[str, Any] | None:
-    """Give `gain` (3x3) and `offset` (3, m/s2) of a device, None when it is taken as it reads."""
-    found: dict[str, Any] | None = tx.value(_accelerometer_calibration, pk=pk)
-    return found
 
 
 def add(tx: WriteSession, device_id: str, values: dict[str, Any], now: datetime) -> int:

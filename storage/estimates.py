@@ -12,6 +12,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import Instant, estimates, microseconds, sessions
+from storage.prepared import Prepared
 
 
 class Extent(NamedTuple):
@@ -62,7 +63,7 @@ _in_period = (
     _utc(estimates.c.t_last) >= _start,
     _utc(estimates.c.t_first) <= _end,
 )
-_add = sa.insert(estimates)
+_add = Prepared(sa.insert(estimates))
 _extent = (
     sa.select(
         sa.func.coalesce(sa.func.sum(estimates.c.t_last - estimates.c.t_first), 0.0),
@@ -112,7 +113,7 @@ def add(
     now: datetime,
 ) -> None:
     """Append a block: `t` its first and last time on the session's clock, `mark` its rows and stage changes."""
-    tx.execute(
+    tx.run(
         _add,
         device_pk=device_pk,
         session_pk=session_pk,

@@ -13,6 +13,7 @@ import sqlalchemy as sa
 from storage import meta
 from storage.database import ReadSession, WriteSession
 from storage.models import Instant, events
+from storage.prepared import Prepared
 
 PRUNED = "events_pruned"
 
@@ -49,8 +50,8 @@ def _bigint(xid8: sa.ColumnElement[object]) -> sa.ColumnElement[int]:
 
 
 _oldest_running = _bigint(sa.func.pg_snapshot_xmin(sa.func.pg_current_snapshot()))
-_add_sqlite = sa.insert(events).values(xact=0)
-_add_postgresql = sa.insert(events).values(xact=_bigint(sa.func.pg_current_xact_id()))
+_add_sqlite = Prepared(sa.insert(events).values(xact=0))
+_add_postgresql = Prepared(sa.insert(events).values(xact=_bigint(sa.func.pg_current_xact_id())))
 _after_sqlite = (
     sa.select(events.c.xact, events.c.pk, events.c.device_id, events.c.type, events.c.data)
     .where(
@@ -73,7 +74,7 @@ _after_postgresql = _after_sqlite.where(events.c.xact < _oldest_running)
 def add(tx: WriteSession, device_id: str, kind: str, data: str, now: datetime) -> None:
     """Append an event."""
     add_here = _add_postgresql if tx.is_postgresql else _add_sqlite
-    tx.execute(add_here, device_id=device_id, type=kind, data=data, created_at=now)
+    tx.run(add_here, device_id=device_id, type=kind, data=data, created_at=now)
 
 
 def after(tx: ReadSession, position: Position, limit: int = 500) -> list[Event]:

@@ -13,6 +13,7 @@ from sqlalchemy.engine import Connection, Engine
 from sqlalchemy.exc import DBAPIError
 from sqlalchemy.exc import TimeoutError as BusyError
 
+from storage import prepared
 from storage.file_lock import FileLock
 
 MOST = 32
@@ -31,10 +32,10 @@ class Group:
     @contextmanager
     def member(self) -> Iterator[Connection]:
         """Add a transaction; when the block raises, only this one is undone."""
-        self.connection.exec_driver_sql("SAVEPOINT member")
+        prepared.execute(self.connection, "SAVEPOINT member")
         try:
             yield self.connection
-            self.connection.exec_driver_sql("RELEASE member")
+            prepared.execute(self.connection, "RELEASE member")
         except BaseException:
             self._undo_member()
             raise
@@ -42,8 +43,8 @@ class Group:
 
     def _undo_member(self) -> None:
         try:
-            self.connection.exec_driver_sql("ROLLBACK TO member")
-            self.connection.exec_driver_sql("RELEASE member")
+            prepared.execute(self.connection, "ROLLBACK TO member")
+            prepared.execute(self.connection, "RELEASE member")
         except DBAPIError as error:  # SQLite has given up the whole transaction, on a full disk for one
             self.error = error
 

@@ -10,6 +10,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import alert_unresolved, alerts, devices, installations, sessions
+from storage.prepared import Prepared
 
 
 class Installation(NamedTuple):
@@ -29,6 +30,8 @@ class Installation(NamedTuple):
     revision: int
     watch: dict[str, Any] | None = None
     """what the rules of alerts remember, see `api/services/rules`"""
+    accelerometer_calibration: dict[str, Any] | None = None
+    """of the device, where it is kept"""
 
 
 class Beside(NamedTuple):
@@ -39,19 +42,25 @@ class Beside(NamedTuple):
     open_alerts: int
 
 
-_columns = [installations.c[name] for name in Installation._fields]
-_of_id = sa.select(*_columns).join_from(installations, devices).where(devices.c.id == sa.bindparam("id"))
-_lock = _of_id.with_for_update(key_share=True, of=installations)
-_get = sa.select(*_columns).where(installations.c.device_pk == sa.bindparam("device_pk"))
+_own = Installation._fields[:-1]
+_select = sa.select(*(installations.c[name] for name in _own), devices.c.accelerometer_calibration).join_from(
+    installations, devices
+)
+_of_id = _select.where(devices.c.id == sa.bindparam("id"))
+_find = Prepared(_of_id)
+_lock = Prepared(_of_id.with_for_update(key_share=True, of=(installations, devices)))
+_get = _select.where(installations.c.device_pk == sa.bindparam("device_pk"))
 _device_id = sa.select(devices.c.id).where(devices.c.pk == sa.bindparam("of_device_pk")).scalar_subquery()
-_beside = sa.select(
+_show = sa.select(
     sa.select(sessions.c.started_at).where(sessions.c.pk == sa.bindparam("since_session_pk")).scalar_subquery(),
     sa.select(sa.func.count()).where(alerts.c.device_id == _device_id, alert_unresolved).scalar_subquery(),
 )
+_beside = Prepared(_show)
 _add = sa.insert(installations).values(device_id=_device_id)
-_save = sa.update(installations).where(installations.c.device_pk == sa.bindparam("of_device_pk"))
-_touch = _save.values(revision=installations.c.revision + 1)
-_remember = _save.values(watch=sa.bindparam("of_watch", type_=installations.c.watch.type))
+_update = sa.update(installations).where(installations.c.device_pk == sa.bindparam("of_device_pk"))
+_save = Prepared(_update)
+_touch = _update.values(revision=installations.c.revision + 1)
+_remember = _update.values(watch=sa.bindparam("of_watch", type_=installations.c.watch.type))
 _told = sa.exists().where(
     alerts.c.device_pk == installations.c.device_pk,
     alerts.c.kind == sa.bindparam("kind"),
@@ -77,7 +86,7 @@ def lock(tx: WriteSession, device_id: str) -> Installation | None:
 
 def find(tx: ReadSession, device_id: str) -> Installation | None:
     """Find the installation of a device by the device's id."""
-    return tx.one(Installation, _of_id, id=device_id)
+    return tx.one(Installation, _find, id=device_id)
 
 
 def get(tx: ReadSession, device_pk: int) -> Installation | None:
@@ -88,18 +97,23 @@ def get(tx: ReadSession, device_pk: int) -> Installation | None:
 def beside(tx: ReadSession, row: Installation) -> Beside:
     """Give what is shown with an installation."""
     values = {"since_session_pk": row.since_session_pk, "of_device_pk": row.device_pk}
-    return Beside(*tx.connection.execute(_beside, values).one())
+    return tx.all(Beside, _beside, **values)[0]
 
 
 def add(tx: WriteSession, installation: Installation) -> None:
     """Store the installation of a new device."""
-    tx.execute(_add, of_device_pk=installation.device_pk, **installation._asdict())
+    values = _values(installation)
+    tx.execute(_add, of_device_pk=values["device_pk"], **values)
 
 
 def save(tx: WriteSession, installation: Installation) -> None:
     """Store what evolves."""
-    values = installation._asdict()
-    tx.execute(_save, of_device_pk=values.pop("device_pk"), **values)
+    values = _values(installation)
+    tx.run(_save, of_device_pk=values.pop("device_pk"), **values)
+
+
+def _values(installation: Installation) -> dict[str, Any]:
+    return dict(zip(_own, installation, strict=False))
 
 
 def remember(tx: WriteSession, device_pk: int, watch: dict[str, Any] | None) -> None:

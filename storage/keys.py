@@ -8,6 +8,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import api_keys, devices
+from storage.prepared import Prepared
 
 USE_INTERVAL = timedelta(minutes=1)
 """A key's last use is not written again before this has passed."""
@@ -45,7 +46,7 @@ _from = api_keys.outerjoin(devices)
 _select = sa.select(*(devices.c.id if name == "device_id" else api_keys.c[name] for name in Key._fields)).select_from(
     _from
 )
-_by_digest = _select.where(api_keys.c.digest == sa.bindparam("digest"))
+_by_digest = Prepared(_select.where(api_keys.c.digest == sa.bindparam("digest")))
 _by_pk = _select.where(api_keys.c.pk == sa.bindparam("pk"))
 _list = (
     sa.select(*(devices.c.id if name == "device_id" else api_keys.c[name] for name in Entry._fields))

@@ -7,6 +7,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import mounts, sessions
+from storage.prepared import Prepared
 
 IN_FORCE, SUSPECT, SUPERSEDED = "in_force", "suspect", "superseded"
 
@@ -35,7 +36,7 @@ _select = sa.select(
 
 
 _current = (mounts.c.device_pk == sa.bindparam("of_device_pk")) & (mounts.c.status != SUPERSEDED)
-_find_current = _select.where(_current)
+_find_current = Prepared(_select.where(_current))
 _of_device = _select.where(mounts.c.device_pk == sa.bindparam("device_pk"))
 _find = _of_device.where(mounts.c.n == sa.bindparam("n"))
 _page = _of_device.order_by(mounts.c.n.desc()).limit(sa.bindparam("limit"))

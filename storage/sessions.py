@@ -12,6 +12,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import sessions
+from storage.prepared import Prepared
 
 
 class Session(NamedTuple):
@@ -25,10 +26,12 @@ class Session(NamedTuple):
 
 
 _select = sa.select(*(sessions.c[name] for name in Session._fields))
-_find = _select.where(sessions.c.device_pk == sa.bindparam("device_pk"), sessions.c.name == sa.bindparam("name"))
+_find = Prepared(
+    _select.where(sessions.c.device_pk == sa.bindparam("device_pk"), sessions.c.name == sa.bindparam("name"))
+)
 _get = _select.where(sessions.c.pk == sa.bindparam("pk"))
 _add = sa.insert(sessions).returning(sessions.c.pk)
-_save = sa.update(sessions).where(sessions.c.pk == sa.bindparam("of_pk"))
+_save = Prepared(sa.update(sessions).where(sessions.c.pk == sa.bindparam("of_pk")))
 
 
 def find(tx: ReadSession, device_pk: int, name: str) -> Session | None:
@@ -52,7 +55,7 @@ def get(tx: ReadSession, pk: int) -> Session:
 
 def save(tx: WriteSession, session: Session) -> None:
     """Store what evolves."""
-    tx.execute(
+    tx.run(
         _save,
         of_pk=session.pk,
         next_seq=session.next_seq,

@@ -12,7 +12,7 @@ from api.services import alerting, findings, history, presenting, publishing, ru
 from api.services.context import Context
 from api.services.errors import NotFoundError, NotStillError, UnusableError
 from api.services.foresight import Foresight, advance
-from storage import devices, installations, mounts
+from storage import installations, mounts
 from storage.database import WriteSession
 from storage.installations import Installation
 from storage.sessions import Session
@@ -64,6 +64,13 @@ class Calibration:
         except core.SnapshotError as error:
             log.warning("device %s: calibration starts anew, its snapshot cannot be read: %s", self.device_id, error)
             return core.initial_state(self.context.params)
+
+    def _snapshot(self) -> bytes | None:
+        if self._state is None:
+            return self.row.snapshot
+        if self.foresight is not None and self._state is self.foresight.state:
+            return self.foresight.snapshot
+        return core.encode(self._state)
 
     def begin(self, session: Session) -> None:
         """The device was switched on: a new session, a new clock."""
@@ -129,8 +136,8 @@ class Calibration:
         return session, outcome
 
     def _advance(self, reading: Reading) -> tuple[core.State, core.Outcome]:
-        correction = devices.accelerometer_calibration(self.tx, self.row.device_pk)
-        if self.foresight is not None and self.foresight.holds(reading, self.state, correction):
+        correction = self.row.accelerometer_calibration
+        if self.foresight is not None and self.foresight.holds(reading, self._snapshot(), correction):
             return self.foresight.state, self.foresight.outcome
         return advance(self.context.params, correction, self.state, reading.samples)
 
@@ -185,7 +192,7 @@ class Calibration:
         """Store the installation and tell the live stream, if anything has changed."""
         if self._state is None:
             return
-        self.row = self.row._replace(snapshot=core.encode(self._state))
+        self.row = self.row._replace(snapshot=self._snapshot())
         self._shown = None
         installations.save(self.tx, self.row)
         publishing.installation_changed(self.tx, self.shown(), self.now)

@@ -15,7 +15,8 @@ from api import metrics
 from api.formats import ParsedLog
 from api.formats.log import Reading
 from api.services.context import Context
-from storage import devices, installations, sessions
+from storage import installations, sessions
+from storage.installations import Installation
 
 Correction = dict[str, Any] | None
 """Calibration of a device's accelerometer, as it is stored."""
@@ -27,14 +28,16 @@ class Foresight(NamedTuple):
     session_context: dict[str, Any] | None
     reading: Reading
     before: bytes
-    """snapshot of the state"""
+    """snapshot of the state before"""
     correction: Correction
     state: core.State
     outcome: core.Outcome
+    snapshot: bytes
+    """of the state"""
 
-    def holds(self, reading: Reading, state: core.State, correction: Correction) -> bool:
+    def holds(self, reading: Reading, before: bytes | None, correction: Correction) -> bool:
         """Tell whether this is what `advance` would give."""
-        return reading is self.reading and correction == self.correction and core.encode(state) == self.before
+        return reading is self.reading and correction == self.correction and before == self.before
 
 
 def foresee(context: Context, device_id: str, session: str, seq: int, parsed: ParsedLog) -> Foresight | None:
@@ -46,19 +49,25 @@ def foresee(context: Context, device_id: str, session: str, seq: int, parsed: Pa
         if row is None:
             return None
         found = sessions.find(tx, row.device_pk, session)
-        correction = devices.accelerometer_calibration(tx, row.device_pk)
     if seq != (0 if found is None else found.next_seq):
         return None
     try:
-        state = core.initial_state(context.params) if row.snapshot is None else core.decode(row.snapshot)
-        if found is None or row.session_pk != found.pk:
-            state = core.begin_session(context.params, state)
+        state, before = _stand(context.params, row, begins=found is None or row.session_pk != found.pk)
         session_context = None if found is None else found.context
         reading = parsed.samples(session_context)
-        after, outcome = advance(context.params, correction, state, reading.samples)
+        after, outcome = advance(context.params, row.accelerometer_calibration, state, reading.samples)
     except (core.SnapshotError, core.SampleError):
         return None  # the transaction says what is wrong
-    return Foresight(session_context, reading, core.encode(state), correction, after, outcome)
+    correction = row.accelerometer_calibration
+    return Foresight(session_context, reading, before, correction, after, outcome, core.encode(after))
+
+
+def _stand(params: core.Parameters, row: Installation, begins: bool) -> tuple[core.State, bytes]:
+    """Give the state that a chunk meets, with its snapshot."""
+    state = core.initial_state(params) if row.snapshot is None else core.decode(row.snapshot)
+    if begins:
+        state = core.begin_session(params, state)
+    return state, core.encode(state) if begins or row.snapshot is None else row.snapshot
 
 
 def advance(

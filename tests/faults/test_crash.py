@@ -1,6 +1,6 @@
 """A fault at any statement of an upload undoes all of it, and the same chunk sent again does all of it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -13,6 +13,7 @@ from starlette.testclient import TestClient
 from api.app import create_app
 from api.settings import Settings
 from storage import database as database_module
+from storage import prepared
 from storage.database import Database
 from storage.models import metadata
 from tests.conftest import Clock
@@ -46,6 +47,11 @@ def crash_at(statement: int) -> Iterator[list[str]]:
         if not connection.get_execution_options().get("postgresql_readonly") and not is_reader(connection):
             count("COMMIT")
 
+    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] = ()) -> list[Any]:
+        before_execute(connection, None, sql)
+        return straight(connection, sql, parameters)
+
+    straight, prepared.execute = prepared.execute, execute
     event.listen(sa.Engine, "before_cursor_execute", before_execute)
     event.listen(sa.Engine, "commit", before_commit)
     try:
@@ -53,6 +59,7 @@ def crash_at(statement: int) -> Iterator[list[str]]:
     finally:
         event.remove(sa.Engine, "before_cursor_execute", before_execute)
         event.remove(sa.Engine, "commit", before_commit)
+        prepared.execute = straight
 
 
 def is_reader(connection: sa.Connection) -> bool:

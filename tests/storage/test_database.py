@@ -1,4 +1,6 @@
 import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -195,3 +197,25 @@ def test_removing_events_remembers_how_far(tables: Database) -> None:
 @pytest.mark.parametrize("text", ["", "1", "1.", ".1", "1.2.3", "-1.2", "1.x", "1e3.2", "٣.٤", "9" * 30 + ".1"])
 def test_only_positions_are_read_as_positions(text: str) -> None:
     assert Position.parse(text) is None
+
+
+def test_a_calibration_edited_while_an_upload_waits_for_the_lock_holds_for_it(tables: Database) -> None:
+    pk = add_device(tables)
+    calibration = {"gain": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "offset": [0, 0, 0]}
+    locked = threading.Event()
+
+    def upload() -> installations.Installation | None:
+        locked.wait()
+        with tables.write() as tx:
+            return installations.lock(tx, "a")
+
+    with ThreadPoolExecutor() as pool:
+        waiting = pool.submit(upload)
+        with tables.write() as tx:
+            installations.lock(tx, "a")
+            devices.edit(tx, pk, {"accelerometer_calibration": calibration})
+            locked.set()
+            time.sleep(0.3)
+        row = waiting.result(10)
+    assert row is not None
+    assert row.accelerometer_calibration == calibration

@@ -13,10 +13,12 @@ from alembic.script import ScriptDirectory
 from storage import devices
 from storage.database import Database
 from storage.migrate import config, upgrade
+from storage.models import devices as device_table
 from storage.models import metadata
 from tests.postgres import Server
 
 ROOT = Path(__file__).parents[2]
+CALIBRATION = sa.select(device_table.c.accelerometer_calibration)
 
 
 @pytest.fixture
@@ -107,9 +109,9 @@ def test_devices_and_what_hangs_on_them_survive_the_second_migration_and_its_und
         tx.execute(sa.text("INSERT INTO sessions (pk, device_pk, name, next_seq, created_at) VALUES (1, 1, 's', 3, 0)"))
     upgrade(database)
     with database.write() as tx:
-        assert devices.accelerometer_calibration(tx, 1) is None
+        assert tx.value(CALIBRATION) is None
         devices.edit(tx, 1, {"accelerometer_calibration": {"gain": [[1.1]], "offset": [0.1]}})
-        assert devices.accelerometer_calibration(tx, 1) == {"gain": [[1.1]], "offset": [0.1]}
+        assert tx.value(CALIBRATION) == {"gain": [[1.1]], "offset": [0.1]}
         command.downgrade(config(tx.connection), "0001")
     with database.read() as tx:
         assert tx.value(sa.text("SELECT name FROM devices")) == "A"

@@ -1,14 +1,26 @@
 """Queries find what they look for by an index, in the order in which it is wanted, however much there is."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
+import sqlalchemy as sa
 from sqlalchemy import event
 
-from storage import alerts, chunks, coarse_estimates, devices, estimates, events, installations, leases, retention
+from storage import (
+    alerts,
+    chunks,
+    coarse_estimates,
+    devices,
+    estimates,
+    events,
+    installations,
+    leases,
+    prepared,
+    retention,
+)
 from storage.alerts import Filter, Place
 from storage.database import Database, ReadSession, WriteSession
 from storage.leases import Lease
@@ -70,11 +82,17 @@ def plans(tx: ReadSession) -> Iterator[list[str]]:
     def note(_connection: object, _cursor: object, statement: str, values: Any, *_rest: object) -> None:
         ran.append((statement, values))
 
+    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] = ()) -> list[Any]:
+        ran.append((sql, tuple(parameters)))
+        return straight(connection, sql, parameters)
+
+    straight, prepared.execute = prepared.execute, execute
     event.listen(tx.connection, "before_cursor_execute", note)
     try:
         yield steps
     finally:
         event.remove(tx.connection, "before_cursor_execute", note)
+        prepared.execute = straight
     for statement, values in ran:
         if not statement.startswith("INSERT"):
             steps += _plan(tx, statement, values)
