@@ -206,6 +206,8 @@ def test_a_test_call_answers_how_it_went(here: Api, receiver: Receiver) -> None:
     shown = here.get(f"{path}/deliveries")["items"]
     assert [(d["type"], d["state"], d["attempts"]) for d in shown] == [("test", "failed", 1), ("test", "delivered", 1)]
     assert here.post(f"{path}/redeliver") == {"deliveries": 0}
+    told = here.get("/audit", params={"action": "webhook.test"})["items"]
+    assert [entry["detail"] for entry in told] == [{"delivered": False}, {"delivered": True}]
 
 
 def test_a_url_that_became_private_is_not_called(api: Api, database: Database, receiver: Receiver) -> None:
