@@ -4,6 +4,7 @@ What is found is written to `DIRECTORY` (out/fuzz by default) as `TARGET-crash-.
 merged into the corpus beside this file, smallest first.
 """
 
+import os
 import shutil
 import subprocess
 import sys
@@ -15,6 +16,8 @@ OUT = Path(__file__).parents[2] / "out" / "fuzz"
 INSTRUMENTED = ["api.formats", "api.services.paging", "core.snapshot", "core.samples", "storage.events"]
 COMPILED = ["core._kernel", "api.formats._kernel"]
 """numba takes the functions as they are written"""
+UNCOMPILED = ("native_csv",)
+"""targets whose compiled code runs as Python, so that its branches are seen"""
 MAX_LENGTH = 4096
 OPTIONS = ["-timeout=20", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=0"]
 
@@ -26,10 +29,12 @@ def fuzz(target: str, arguments: list[str]) -> None:
     except ImportError:
         sys.exit("atheris is missing: pip install 'livella[fuzz]', on a Python it is built for")
 
-    with atheris.instrument_imports(include=INSTRUMENTED, exclude=COMPILED):
+    with atheris.instrument_imports(include=INSTRUMENTED, exclude=[] if target in UNCOMPILED else COMPILED):
         from tests.fuzz.targets import TARGETS
 
     warnings.simplefilter("error")  # as in the tests
+    if target in UNCOMPILED:
+        warnings.filterwarnings("ignore", "overflow encountered")  # integers of machine code wrap silently
     itself = f"{sys.executable} -m tests.fuzz.run --child {target}"  # a merge calls it anew, through a shell
     atheris.Setup([itself, *arguments], TARGETS[target])
     atheris.Fuzz()
@@ -63,7 +68,8 @@ def _minimise(target: str, length: str, prefix: str, work: Path, kept: Path) -> 
 
 def _child(target: str, *arguments: str) -> int:
     command = [sys.executable, "-m", "tests.fuzz.run", "--child", target, *arguments]
-    return subprocess.run(command, check=False).returncode
+    environment = os.environ | ({"NUMBA_DISABLE_JIT": "1"} if target in UNCOMPILED else {})
+    return subprocess.run(command, check=False, env=environment).returncode
 
 
 def main() -> int:
