@@ -37,6 +37,7 @@ INDEXES = (
     ("ix_alerts_kind_opened_at_pk", "alerts", ["kind", "opened_at", "pk"]),
     ("ix_alerts_severity_opened_at_pk", "alerts", ["severity", "opened_at", "pk"]),
 )
+SEARCH_INDEX = "ix_devices_id_search"
 UNRESOLVED = sa.text("state != 'resolved'")
 UNRESOLVED_INDEXES = (
     ("ix_alerts_unresolved_device_id", ["device_id", "device_pk"]),
@@ -59,6 +60,8 @@ def upgrade() -> None:
     _fill_copies()
     for name, table, columns in INDEXES:
         op.create_index(name, table, columns, unique=False)
+    if op.get_bind().dialect.name == "sqlite":
+        op.create_index(SEARCH_INDEX, "devices", ["id", "search"], unique=False)
     for name, table, _ in FORMER_INDEXES:
         op.drop_index(name, table_name=table)
     for name, columns in UNRESOLVED_INDEXES:
@@ -208,6 +211,8 @@ def downgrade() -> None:
         op.drop_index(name, table_name="alerts")
     for name, table, columns in FORMER_INDEXES:
         op.create_index(name, table, columns, unique=False)
+    if op.get_bind().dialect.name == "sqlite":
+        op.drop_index(SEARCH_INDEX, table_name="devices")
     for name, table, _ in reversed(INDEXES):
         op.drop_index(name, table_name=table)
     for table, name, _ in (*reversed(COPIES), *reversed(ADDED)):
