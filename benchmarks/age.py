@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -21,6 +22,7 @@ QUICK = (Size(2000, 4, days=30), Effort(5, 3))
 
 
 def main() -> None:
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that PostgreSQL is ended too
     options = _options()
     size, effort = QUICK if options.quick else (Size(), Effort())
     studies: Studies = {kind: _study(kind, size, effort) for kind in options.database or KINDS}

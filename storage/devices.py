@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import alert_unresolved, alerts, devices, installations, mounts
+from storage.models import alert_unresolved, alerts, devices, installations, mount_current, mounts
 
 
 class Device(NamedTuple):
@@ -38,7 +38,7 @@ open_alerts = (
 
 _mount_status = (
     sa.select(mounts.c.status)
-    .where(mounts.c.device_pk == devices.c.pk, mounts.c.status != "superseded")
+    .where(mounts.c.device_pk == devices.c.pk, mount_current)
     .correlate(devices)
     .scalar_subquery()
 )
@@ -108,9 +108,9 @@ def page(
     pk, device_id, conditions = _listed(tx, q, stage, has_open_alert)
     if after is not None:
         conditions.append(device_id > after)
-    pks = sa.select(pk).where(*conditions).order_by(device_id, pk).limit(limit)
+    pks = sa.select(pk).where(*conditions).order_by(device_id).limit(limit)
     if pk is alerts.c.device_pk:
-        pks = pks.group_by(device_id, pk)  # there may be several of a device
+        pks = pks.group_by(device_id, pk).order_by(pk)  # there may be several of a device
     return tx.all(Device, _select.where(devices.c.pk.in_(pks)).order_by(devices.c.id))
 
 
@@ -138,12 +138,14 @@ def _few(tx: ReadSession, some: sa.Select[int], **values: Any) -> bool:
     return int(tx.value(some, **values, few=FEW)) < FEW
 
 
-def _holds(q: str) -> sa.ColumnElement[bool]:
-    return devices.c.search.contains(q.casefold(), autoescape=True)
+def _holds(q: str, text: sa.ColumnElement[str] = devices.c.search) -> sa.ColumnElement[bool]:
+    return text.contains(q.casefold(), autoescape=True)
 
 
 def _has_text(pk: sa.ColumnElement[int], q: str | None) -> list[sa.ColumnElement[bool]]:
-    return [sa.exists().where(devices.c.pk == pk, _holds(q))] if q else []
+    """Look at the text of one device after the other; PostgreSQL would turn EXISTS into a search of all devices."""
+    text = sa.select(devices.c.search).where(devices.c.pk == pk).scalar_subquery()
+    return [_holds(q, text)] if q else []
 
 
 def _has_stage(device_id: sa.ColumnElement[str], stage: str | None) -> list[sa.ColumnElement[bool]]:

@@ -199,6 +199,15 @@ mounts = sa.Table(
     sa.Column("verification", sa.JSON, nullable=False),
     sa.Column("status", sa.String(16), nullable=False),
 )
+mount_current = mounts.c.status != sa.literal_column("'superseded'")
+"""As written in the index, so that queries find it."""
+sa.Index(
+    "uq_mounts_current",
+    mounts.c.device_pk,
+    unique=True,
+    sqlite_where=mount_current,
+    postgresql_where=mount_current,
+)
 
 alerts = sa.Table(
     "alerts",

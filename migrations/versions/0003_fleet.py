@@ -38,6 +38,8 @@ INDEXES = (
     ("ix_alerts_severity_opened_at_pk", "alerts", ["severity", "opened_at", "pk"]),
 )
 SEARCH_INDEX = "ix_devices_id_search"
+MOUNT_INDEX = "uq_mounts_current"
+NOT_SUPERSEDED = sa.text("status != 'superseded'")
 UNRESOLVED = sa.text("state != 'resolved'")
 UNRESOLVED_INDEXES = (
     ("ix_alerts_unresolved_device_id", ["device_id", "device_pk"]),
@@ -66,6 +68,9 @@ def upgrade() -> None:
         op.drop_index(name, table_name=table)
     for name, columns in UNRESOLVED_INDEXES:
         op.create_index(name, "alerts", columns, unique=False, sqlite_where=UNRESOLVED, postgresql_where=UNRESOLVED)
+    op.create_index(
+        MOUNT_INDEX, "mounts", ["device_pk"], unique=True, sqlite_where=NOT_SUPERSEDED, postgresql_where=NOT_SUPERSEDED
+    )
     _webhooks()
     _deliveries()
     _audit()
@@ -207,6 +212,7 @@ def downgrade() -> None:
     for table in ("leases", "audit", "webhook_deliveries", "webhooks"):
         op.drop_table(table)
     _history_undone()
+    op.drop_index(MOUNT_INDEX, table_name="mounts")
     for name, _ in UNRESOLVED_INDEXES:
         op.drop_index(name, table_name="alerts")
     for name, table, columns in FORMER_INDEXES:
