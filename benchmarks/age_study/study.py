@@ -23,7 +23,7 @@ class Effort(NamedTuple):
 
     rounds: int = 60
     """chunks of each device"""
-    repeats: int = 15
+    repeats: int = 40
     """of each list and chart"""
 
 
