@@ -1,6 +1,6 @@
 """The section on age of docs/performance.md."""
 
-import math
+import os
 from collections.abc import Iterator, Mapping
 from statistics import median
 
@@ -8,6 +8,7 @@ from benchmarks.accuracy_study.statistics import Target, number, table, target_t
 from benchmarks.age_study.past import MOUNTS
 from benchmarks.age_study.study import Study
 from benchmarks.kernel_speed.page import processor
+from benchmarks.kernel_speed.timing import Timing
 
 GROWTH = 1.2
 """times as long as on the first day, at most"""
@@ -24,11 +25,14 @@ an open alert. In one a year has passed: {alerts} resolved alerts, and {senders}
 day in {sessions} sessions, with their coarse and fine history, the receipts that are kept, and {mounts} former
 mountings each. In the other the same devices are new. The same chunks (a minute, 200 Hz, Arrow) go to both in turn
 through the service's own functions, and lists (pages of 100) and charts (1000 points) are read from both in turn, up to
-the JSON that is sent; so noise falls on both alike. Times are medians. Growth is how many times as long something takes
-after a year: of lists and charts the median over those that show the same in both, in brackets the largest.
+the JSON that is sent; so noise falls on both alike.
 
-Measured on: {machine}."""
-UPLOAD_TEXT = "Uploads, ms, {number} of each:"
+Times of uploads are medians and p99 of {uploads} of each; those of lists and charts medians, with the shortest behind
+the slash. Growth is how many times as long something takes after a year: of lists and charts by their shortest times,
+the median over those that show the same in both, in brackets the largest.
+
+Measured on: {machine}, shared with other work (load average {load:.1f}, this included)."""
+UPLOAD_TEXT = "Uploads, ms:"
 LIST_TEXT = (
     """Lists of {devices} devices and of their alerts, and charts, ms: first page, and the slowest of the deep ones."""
 )
@@ -47,7 +51,9 @@ def assemble(studies: Studies) -> str:
         hours=size.sessions_a_day * size.hours,
         sessions=size.sessions_a_day,
         mounts=MOUNTS,
+        uploads=next(iter(done.values())).uploads.number,
         machine=processor(),
+        load=os.getloadavg()[1],
     )
     return "\n\n".join([text, target_table(targets(studies)), uploads(done), looks(done)])
 
@@ -75,7 +81,7 @@ def growth(study: Study, begin: str) -> list[float]:
     """Give how many times as long looks of a kind take after a year."""
     names = [name for age, name in study.looks if age == "old" and name.startswith(begin)]
     same = [name for name in names if begin == LISTS or name in COMPARED]
-    return [study.looks["old", name].median / study.looks["fresh", name].median for name in same]
+    return [study.looks["old", name].least / study.looks["fresh", name].least for name in same]
 
 
 def slowest(study: Study, begin: str) -> float:
@@ -100,8 +106,7 @@ def uploads(done: Mapping[str, Study]) -> str:
         for kind, study in done.items()
         for age, latency in (("after a year", study.uploads.old), ("fresh", study.uploads.fresh))
     ]
-    text = UPLOAD_TEXT.format(number=next(iter(done.values())).uploads.number)
-    return f"{text}\n\n{table(['', 'median', 'p99'], rows)}"
+    return f"{UPLOAD_TEXT}\n\n{table(['', 'median', 'p99'], rows)}"
 
 
 def looks(done: Mapping[str, Study]) -> str:
@@ -109,14 +114,19 @@ def looks(done: Mapping[str, Study]) -> str:
     first = next(iter(done.values()))
     names = [name for age, name in first.looks if age == "old" and " a page " not in name]
     columns = [f"{kind}, {what}" for kind in done for what in ("first", "deep", "first, fresh")]
-    rows = [[name, *(_ms(seconds) for study in done.values() for seconds in _times(study, name))] for name in names]
+    rows = [[name, *(_both(timing) for study in done.values() for timing in _times(study, name))] for name in names]
     text = LIST_TEXT.format(devices=f"{first.size.devices:,}")
     return f"{text}\n\n{table(['', *columns], rows)}"
 
 
-def _times(study: Study, name: str) -> list[float]:
-    deep = [t.median for (age, other), t in study.looks.items() if age == "old" and other.startswith(f"{name}, a page")]
-    return [study.looks["old", name].median, max(deep, default=math.nan), study.looks["fresh", name].median]
+def _times(study: Study, name: str) -> list[Timing | None]:
+    deep = [timing for (age, at), timing in study.looks.items() if age == "old" and at.startswith(f"{name}, a page")]
+    slowest_deep = max(deep, key=lambda timing: timing.median, default=None)
+    return [study.looks["old", name], slowest_deep, study.looks["fresh", name]]
+
+
+def _both(timing: Timing | None) -> str:
+    return "–" if timing is None else f"{_ms(timing.median)} / {_ms(timing.least)}"
 
 
 def _ms(seconds: float) -> str:

@@ -6,9 +6,10 @@ import pytest
 import sqlalchemy as sa
 
 from api import schemas
-from api.services import access, fleet, ingest, startup, webhooks
+from api.services import access, fleet, ingest, startup
 from api.services.context import Context
 from api.settings import Settings
+from storage import devices, webhooks
 from storage.chunks import Body
 from tests.conftest import Clock
 from tests.drives import remounted
@@ -54,8 +55,9 @@ def send_everything(context: Context, clock: Clock, key: str) -> None:
 def plans(context: Context, clock: Clock) -> dict[str, list[str]]:
     """Give the steps of every statement of uploads."""
     key = fleet.register(context, schemas.DeviceDraft(id="a", name="A")).key
-    fleet.edit(context, "a", {"accelerometer_calibration": {"gain": GAIN, "offset": [0.0] * 3}})
-    webhooks.add(context, schemas.WebhookDraft(name="w", url="https://example.com/"), "x")
+    with context.database.write() as tx:
+        devices.edit(tx, fleet.number(tx, "a"), {"accelerometer_calibration": {"gain": GAIN, "offset": [0.0] * 3}})
+        webhooks.add(tx, {"name": "w", "url": "https://example.com/", "active": True}, "secret", "x", clock())
     with statements(sa.Engine) as ran:
         send_everything(context, clock, key)
     with context.database.write() as tx:
