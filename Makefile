@@ -76,7 +76,7 @@ bench-kernel: setup  ## speed beside numpy and filterpy: writes docs/performance
 bench-load: setup  ## devices the service holds, 20 minutes: writes docs/performance.md
 	$(BIN)/python benchmarks/load.py
 
-bench-age: setup  ## uploads, lists and charts after a year beside fresh ones
+bench-age: setup  ## uploads, lists and charts after a year, 7 minutes: writes docs/performance.md
 	$(BIN)/python benchmarks/age.py
 
 FUZZ_SECONDS ?= 80

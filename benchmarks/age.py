@@ -1,98 +1,53 @@
-"""Lists of a large fleet and charts of a long past: the time of each query, ms, the best of several."""
+"""Age: what a large fleet and a year of history cost. Writes the section on it of docs/performance.md."""
 
 import argparse
+import os
+import signal
 import sys
-import tempfile
-import time
-from collections.abc import Callable, Sized
-from datetime import timedelta
 from pathlib import Path
-from typing import Any
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pydantic import SecretStr
+from benchmarks.accuracy_study.options import DOCS
+from benchmarks.age_study.databases import why_not
+from benchmarks.age_study.page import Studies, assemble, told
+from benchmarks.age_study.pair import Size
+from benchmarks.age_study.study import Effort, Study, carry_out
+from benchmarks.load_study.cells import POSTGRESQL, SQLITE
+from benchmarks.sections import write_section
 
-from api.services import history, startup
-from api.services.context import Context
-from api.settings import Settings
-from benchmarks.age_study.past import NOW, add_fleet, add_year, periods
-from storage import alerts, devices
-from storage.alerts import Filter
-from storage.database import ReadSession
-
-LISTS: tuple[dict[str, Any], ...] = (
-    {},
-    {"stage": "confirmed"},
-    {"stage": "waiting"},
-    {"has_open_alert": True},
-    {"has_open_alert": False},
-    {"has_open_alert": True, "stage": "aligning"},
-    {"has_open_alert": False, "stage": "settling"},
-    {"q": "box 99"},
-    {"q": "nowhere"},
-    {"q": "box", "stage": "waiting"},
-    {"q": "hh-lv 1", "has_open_alert": True},
-)
-ALERTS = (
-    Filter(),
-    Filter(state="open"),
-    Filter(kind="gps_lost", state="resolved"),
-    Filter(severity="critical"),
-    Filter(device_id="old"),
-    Filter(since=NOW),
-    Filter(until=NOW.replace(year=NOW.year - 1)),
-    Filter(kind="sensor_fault", severity="critical", state="open"),
-)
-NAMES = ("q", "stage", "has_open_alert")
-REPEATS = 5
+KINDS = (SQLITE, POSTGRESQL)
+QUICK = (Size(2000, 4, days=30), Effort(5, 3))
 
 
 def main() -> None:
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that PostgreSQL is ended too
+    options = _options()
+    size, effort = QUICK if options.quick else (Size(), Effort())
+    studies: Studies = {kind: _study(kind, size, effort) for kind in options.database or KINDS}
+    if options.quick or options.database:
+        print("age: not written, this was no full run", flush=True)
+        return
+    write_section(DOCS / "performance.md", "age", assemble(studies))
+    print(f"age: wrote {DOCS / 'performance.md'}", flush=True)
+
+
+def _study(kind: str, size: Size, effort: Effort) -> Study | str:
+    reason = why_not(kind)
+    if reason is not None:
+        print(f"{kind}: not measured, {reason}", flush=True)
+        return reason
+    study = carry_out(kind, size, effort)
+    print(told(kind, study), flush=True)
+    return study
+
+
+def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--database-url", help="an empty database; one in a temporary file unless given")
-    parser.add_argument("--devices", type=int, default=100_000)
-    parser.add_argument("--alerts", type=int, default=10, help="of each device, over as many years")
-    arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as directory:
-        url = arguments.database_url or f"sqlite:///{directory}/age.db"
-        settings = Settings(database_url=SecretStr(url), data_dir=Path(directory))
-        context = Context.make(settings, lambda: NOW)
-        startup.prepare(context)
-        pk = add_year(context, 5, 1.6)
-        add_fleet(context.database, range(pk + 1, pk + 1 + arguments.devices), arguments.alerts)
-        measure(context, pk)
-        context.database.close()
-
-
-def measure(context: Context, pk: int) -> None:
-    """Print a line for each query."""
-    for filters in LISTS:
-        show(context, f"devices {filters}", devices.page, 101, None, *map(filters.get, NAMES))
-        show(context, "  from the middle", devices.page, 101, "dev-8", *map(filters.get, NAMES))
-    for wanted in ALERTS:
-        named = {name: str(value) for name, value in wanted._asdict().items() if value is not None}
-        show(context, f"alerts {named}", alerts.page, 101, None, wanted)
-    for name, span in periods():
-        show(context, f"chart of {name}", chart, pk, span)
-    show(context, "counts of alerts", alerts.counts)
-    show(context, "counts of stages", devices.stages)
-
-
-def chart(tx: ReadSession, pk: int, span: timedelta) -> Sized:
-    """Give the times of a chart's points."""
-    return history.read(tx, pk, NOW - span, NOW, 1000).time
-
-
-def show(context: Context, name: str, query: Callable[..., Sized], *arguments: object) -> None:
-    """Print how long a query takes and how much it gives."""
-    best = float("inf")
-    for _ in range(REPEATS):
-        begun = time.perf_counter()
-        with context.database.read() as tx:
-            found = query(tx, *arguments)
-        best = min(best, time.perf_counter() - begun)
-    print(f"{1e3 * best:8.1f} ms {len(found):6d} {name}", flush=True)
+    parser.add_argument("--database", action="append", choices=KINDS, help="only this one")
+    parser.add_argument("--quick", action="store_true", help="a small fleet and a month")
+    return parser.parse_args()
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import alert_unresolved, alerts, devices, installations, mounts
+from storage.models import alert_unresolved, alerts, devices, installations, mount_current, mounts
 
 
 class Device(NamedTuple):
@@ -38,7 +38,7 @@ open_alerts = (
 
 _mount_status = (
     sa.select(mounts.c.status)
-    .where(mounts.c.device_pk == devices.c.pk, mounts.c.status != "superseded")
+    .where(mounts.c.device_pk == devices.c.pk, mount_current)
     .correlate(devices)
     .scalar_subquery()
 )
@@ -66,6 +66,18 @@ TEXTS = ("id", "name", "vehicle", "notes")
 """What is searched, in this order."""
 SEARCHED = 1000
 """characters of these texts that are searched"""
+_plan_for_this_text = sa.text("SET LOCAL plan_cache_mode = force_custom_plan")
+"""Whether many or few have a text decides how PostgreSQL finds them; a plan made for any text takes it for common."""
+FEW = 5000
+"""devices that are looked at one by one as fast as all of them in a row"""
+
+
+def _count_some(which: sa.Select[Any]) -> sa.Select[int]:
+    return sa.select(sa.func.count()).select_from(which.limit(sa.bindparam("few")).subquery("some"))
+
+
+_some_alerts = _count_some(sa.select(alerts.c.device_id).where(alert_unresolved))
+_some_of_stage = _count_some(sa.select(installations.c.device_id).where(installations.c.stage == sa.bindparam("stage")))
 _texts = sa.select(*(devices.c[name] for name in TEXTS)).where(devices.c.pk == sa.bindparam("pk"))
 _remove = sa.delete(devices).where(devices.c.pk == sa.bindparam("pk"))
 
@@ -90,34 +102,49 @@ def page(
     has_open_alert: bool | None = None,
 ) -> list[Device]:
     """Give up to `limit` devices in the order of their ids, from after `after`; `q` is looked for in every text."""
-    pk, device_id, conditions = _listed(q, stage, has_open_alert)
+    if q and tx.is_postgresql:
+        tx.connection.execute(_plan_for_this_text)
+    pk, device_id, conditions = _listed(tx, q, stage, has_open_alert)
     if after is not None:
         conditions.append(device_id > after)
-    pks = sa.select(pk).where(*conditions).order_by(device_id, pk).limit(limit)
+    pks = sa.select(pk).where(*conditions).order_by(device_id).limit(limit)
     if pk is alerts.c.device_pk:
-        pks = pks.group_by(device_id, pk)  # there may be several of a device
+        pks = pks.group_by(device_id, pk).order_by(pk)  # there may be several of a device
     return tx.all(Device, _select.where(devices.c.pk.in_(pks)).order_by(devices.c.id))
 
 
 Listed = tuple[sa.ColumnElement[int], sa.ColumnElement[str], list[sa.ColumnElement[bool]]]
 
 
-def _listed(q: str | None, stage: str | None, has_open_alert: bool | None) -> Listed:
+def _listed(tx: ReadSession, q: str | None, stage: str | None, has_open_alert: bool | None) -> Listed:
     """Give number, id and conditions of the devices to list, from where an index has the most telling ones in order.
 
-    A text is looked for in every device, by number: in the order of ids, which is random there, that takes longer.
+    A text that few have is looked for in every device, unless a few others are named: then only in those.
     """
-    if q:
-        pk, device_id = devices.c.pk, devices.c.id.concat("")
-        found = devices.c.search.contains(q.casefold(), autoescape=True)
-        return pk, device_id, [found, *_has_stage(devices.c.id, stage), *_is_alerted(devices.c.id, has_open_alert)]
-    if has_open_alert:
-        device_id = alerts.c.device_id
-        return alerts.c.device_pk, device_id, [alert_unresolved, *_has_stage(device_id, stage)]
-    if stage is not None:
+    if has_open_alert and (not q or _few(tx, _some_alerts)):
+        pk, device_id = alerts.c.device_pk, alerts.c.device_id
+        return pk, device_id, [alert_unresolved, *_has_stage(device_id, stage), *_has_text(pk, q)]
+    if stage is not None and (not q or _few(tx, _some_of_stage, stage=stage)):
         pk, device_id = installations.c.device_pk, installations.c.device_id
-        return pk, device_id, [installations.c.stage == stage, *_is_alerted(device_id, has_open_alert)]
-    return devices.c.pk, devices.c.id, _is_alerted(devices.c.id, has_open_alert)
+        this = installations.c.stage == stage
+        return pk, device_id, [this, *_is_alerted(device_id, has_open_alert), *_has_text(pk, q)]
+    found = [] if not q else [_holds(q)]
+    device_id = devices.c.id
+    return devices.c.pk, device_id, [*found, *_has_stage(device_id, stage), *_is_alerted(device_id, has_open_alert)]
+
+
+def _few(tx: ReadSession, some: sa.Select[int], **values: Any) -> bool:
+    return int(tx.value(some, **values, few=FEW)) < FEW
+
+
+def _holds(q: str, text: sa.ColumnElement[str] = devices.c.search) -> sa.ColumnElement[bool]:
+    return text.contains(q.casefold(), autoescape=True)
+
+
+def _has_text(pk: sa.ColumnElement[int], q: str | None) -> list[sa.ColumnElement[bool]]:
+    """Look at the text of one device after the other; PostgreSQL would turn EXISTS into a search of all devices."""
+    text = sa.select(devices.c.search).where(devices.c.pk == pk).scalar_subquery()
+    return [_holds(q, text)] if q else []
 
 
 def _has_stage(device_id: sa.ColumnElement[str], stage: str | None) -> list[sa.ColumnElement[bool]]:

@@ -84,6 +84,9 @@ devices = sa.Table(
     sa.Column("search", sa.Text, nullable=False, server_default=""),
     sqlite_autoincrement=True,
 )
+sa.Index("ix_devices_id_search", devices.c.id, devices.c.search).ddl_if(dialect="sqlite")
+"""SQLite looks through texts in the order of ids here, without the rest of the rows. PostgreSQL's indexes do not take
+texts of any length, and it chooses by its statistics."""
 
 api_keys = sa.Table(
     "api_keys",
@@ -206,6 +209,15 @@ mounts = sa.Table(
     sa.Column("sigma_deg", sa.JSON, nullable=False),
     sa.Column("verification", sa.JSON, nullable=False),
     sa.Column("status", sa.String(16), nullable=False),
+)
+mount_current = mounts.c.status != sa.literal_column("'superseded'")
+"""As written in the index, so that queries find it."""
+sa.Index(
+    "uq_mounts_current",
+    mounts.c.device_pk,
+    unique=True,
+    sqlite_where=mount_current,
+    postgresql_where=mount_current,
 )
 
 alerts = sa.Table(

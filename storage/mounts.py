@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import mounts, sessions
+from storage.models import mount_current, mounts, sessions
 from storage.prepared import Prepared
 
 IN_FORCE, SUSPECT, SUPERSEDED = "in_force", "suspect", "superseded"
@@ -35,7 +35,7 @@ _select = sa.select(
 ).join_from(mounts, sessions)
 
 
-_current = (mounts.c.device_pk == sa.bindparam("of_device_pk")) & (mounts.c.status != SUPERSEDED)
+_current = (mounts.c.device_pk == sa.bindparam("of_device_pk")) & mount_current
 _find_current = Prepared(_select.where(_current))
 _of_device = _select.where(mounts.c.device_pk == sa.bindparam("device_pk"))
 _find = _of_device.where(mounts.c.n == sa.bindparam("n"))

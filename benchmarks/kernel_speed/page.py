@@ -135,12 +135,17 @@ def _figures(timing: Timing, scale: float) -> str:
 
 def machine() -> str:
     """Say in a line what it was measured on."""
+    versions = f"numpy {np.__version__}, numba {numba.__version__}, filterpy {filterpy.__version__}"
+    return f"{processor()}, {versions}."
+
+
+def processor() -> str:
+    """Name the processor, its cores, and Python."""
     cpuinfo = Path("/proc/cpuinfo")
     lines = cpuinfo.read_text(encoding="utf-8").splitlines() if cpuinfo.exists() else []
     names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
     name = names[0] if names else platform.processor() or platform.machine()
-    versions = f"numpy {np.__version__}, numba {numba.__version__}, filterpy {filterpy.__version__}"
-    return f"{name}, {os.cpu_count()} cores; Python {platform.python_version()}, {versions}."
+    return f"{name}, {os.cpu_count()} cores; Python {platform.python_version()}"
 
 
 def assemble(timings: Timings, shapes: Shapes, repeats: int) -> str:

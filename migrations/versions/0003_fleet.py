@@ -38,6 +38,9 @@ INDEXES = (
     ("ix_alerts_kind_opened_at_pk", "alerts", ["kind", "opened_at", "pk"]),
     ("ix_alerts_severity_opened_at_pk", "alerts", ["severity", "opened_at", "pk"]),
 )
+SEARCH_INDEX = "ix_devices_id_search"
+MOUNT_INDEX = "uq_mounts_current"
+NOT_SUPERSEDED = sa.text("status != 'superseded'")
 UNRESOLVED = sa.text("state != 'resolved'")
 UNRESOLVED_INDEXES = (
     ("ix_alerts_unresolved_device_id", ["device_id", "device_pk"]),
@@ -60,10 +63,15 @@ def upgrade() -> None:
     _fill_copies()
     for name, table, columns in INDEXES:
         op.create_index(name, table, columns, unique=False)
+    if op.get_bind().dialect.name == "sqlite":
+        op.create_index(SEARCH_INDEX, "devices", ["id", "search"], unique=False)
     for name, table, _ in FORMER_INDEXES:
         op.drop_index(name, table_name=table)
     for name, columns in UNRESOLVED_INDEXES:
         op.create_index(name, "alerts", columns, unique=False, sqlite_where=UNRESOLVED, postgresql_where=UNRESOLVED)
+    op.create_index(
+        MOUNT_INDEX, "mounts", ["device_pk"], unique=True, sqlite_where=NOT_SUPERSEDED, postgresql_where=NOT_SUPERSEDED
+    )
     _webhooks()
     _deliveries()
     _audit()
@@ -224,10 +232,13 @@ def downgrade() -> None:
     for table in ("sign_ins", "leases", "audit", "webhook_deliveries", "webhooks"):
         op.drop_table(table)
     _history_undone()
+    op.drop_index(MOUNT_INDEX, table_name="mounts")
     for name, _ in UNRESOLVED_INDEXES:
         op.drop_index(name, table_name="alerts")
     for name, table, columns in FORMER_INDEXES:
         op.create_index(name, table, columns, unique=False)
+    if op.get_bind().dialect.name == "sqlite":
+        op.drop_index(SEARCH_INDEX, table_name="devices")
     for name, table, _ in reversed(INDEXES):
         op.drop_index(name, table_name=table)
     for table, name, _ in (*reversed(COPIES), *reversed(ADDED)):

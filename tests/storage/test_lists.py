@@ -62,8 +62,11 @@ def listed(database: Database, limit: int, **filters: Any) -> Iterator[str]:
         after = found[-1].id
 
 
-@pytest.mark.parametrize("limit", [3, 500])
-def test_every_combination_of_filters(tables: Database, fleet: list[Known], limit: int) -> None:
+@pytest.mark.parametrize(("limit", "few"), [(3, 5000), (500, 5000), (3, 1), (500, 40)])
+def test_every_combination_of_filters(
+    tables: Database, fleet: list[Known], limit: int, few: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(devices, "FEW", few)
     wanted: Any = product((None, "box 3", "äÖ", "_the%", "nowhere"), (None, *STAGES), (None, True, False))
     for q, stage, alerted in wanted:
         expected = [

@@ -38,8 +38,10 @@ def test_the_migrations_make_the_tables_of_the_models(empty_url: str) -> None:
     database = Database(empty_url)
     upgrade(database)
     assert tables(database) == {*metadata.tables, "alembic_version"}
+    elsewhere = set() if database.is_sqlite else {"ix_devices_id_search"}
+    opts = {"include_object": lambda _thing, name, *_rest: name not in elsewhere}
     with database.read() as tx:
-        differences = compare_metadata(MigrationContext.configure(tx.connection), metadata)
+        differences = compare_metadata(MigrationContext.configure(tx.connection, opts=opts), metadata)
     assert differences == []
     upgrade(database)
     database.close()

@@ -1,13 +1,9 @@
 """Queries find what they look for by an index, in the order in which it is wanted, however much there is."""
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
-from typing import Any
 
 import pytest
-import sqlalchemy as sa
-from sqlalchemy import event
 
 from storage import (
     alerts,
@@ -18,18 +14,17 @@ from storage import (
     events,
     installations,
     leases,
-    prepared,
     retention,
 )
 from storage.alerts import Filter, Place
 from storage.database import Database, ReadSession, WriteSession
 from storage.leases import Lease
 from storage.migrate import upgrade
+from tests.plans import explain, reads_whole_tables, statements
 
 NOW = datetime(2024, 5, 6, 7, 8, 9, tzinfo=UTC)
 PERIOD = (NOW - timedelta(days=30), NOW)
 
-READS_ALL = ("Seq Scan on", "SCAN ")
 INSTALLATION: installations.Installation = installations.Installation(
     1, None, None, "waiting", 1, 0.0, NOW, {}, last_data_at=None, revision=0
 )
@@ -40,6 +35,9 @@ LISTS: dict[str, Callable[[ReadSession], object]] = {
     "devices without an alert": lambda tx: devices.page(tx, 101, "m", has_open_alert=False),
     "devices of a stage with an alert": lambda tx: devices.page(tx, 101, stage="waiting", has_open_alert=True),
     "devices of a stage without one": lambda tx: devices.page(tx, 101, stage="waiting", has_open_alert=False),
+    "devices with a text": lambda tx: devices.page(tx, 101, "m", q="x"),
+    "devices with a text and an alert": lambda tx: devices.page(tx, 101, "m", q="x", has_open_alert=True),
+    "devices with a text of a stage": lambda tx: devices.page(tx, 101, "m", q="x", stage="waiting"),
     "alerts": lambda tx: alerts.page(tx, 101, None, Filter()),
     "alerts from a place": lambda tx: alerts.page(tx, 101, Place(NOW, 7), Filter()),
     "alerts in a state": lambda tx: alerts.page(tx, 101, Place(NOW, 7), Filter(state="open")),
@@ -73,36 +71,6 @@ LOOKS: dict[str, Callable[[WriteSession], object]] = {
 }
 
 
-@contextmanager
-def plans(tx: ReadSession) -> Iterator[list[str]]:
-    """Give the plan of every statement of the block, a line for each step."""
-    ran: list[tuple[str, Any]] = []
-    steps: list[str] = []
-
-    def note(_connection: object, _cursor: object, statement: str, values: Any, *_rest: object) -> None:
-        ran.append((statement, values))
-
-    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] = ()) -> list[Any]:
-        ran.append((sql, tuple(parameters)))
-        return straight(connection, sql, parameters)
-
-    straight, prepared.execute = prepared.execute, execute
-    event.listen(tx.connection, "before_cursor_execute", note)
-    try:
-        yield steps
-    finally:
-        event.remove(tx.connection, "before_cursor_execute", note)
-        prepared.execute = straight
-    for statement, values in ran:
-        if not statement.startswith("INSERT"):
-            steps += _plan(tx, statement, values)
-
-
-def _plan(tx: ReadSession, statement: str, values: Any) -> list[str]:
-    explain = "EXPLAIN (COSTS OFF)" if tx.is_postgresql else "EXPLAIN QUERY PLAN"
-    return [str(row[-1]) for row in tx.connection.exec_driver_sql(f"{explain} {statement}", values)]
-
-
 @pytest.fixture
 def tables(database: Database) -> Database:
     upgrade(database)
@@ -113,18 +81,11 @@ def look(tables: Database, query: Callable[[WriteSession], object]) -> list[str]
     with tables.write() as tx:
         if tx.is_postgresql:
             tx.connection.exec_driver_sql("SET LOCAL enable_seqscan = off")  # tables are empty: it is what can be done
-        with plans(tx) as steps:
+        with statements(tx.connection) as ran:
             query(tx)
+        steps = [step for statement in ran if not statement[0].startswith("INSERT") for step in explain(tx, statement)]
     assert steps
     return steps
-
-
-def reads_whole_tables(steps: list[str]) -> list[str]:
-    """Give the steps that read every row of a table; reading an index in its order, until enough is found, is none."""
-    begins = [step.strip().removeprefix("->").strip() for step in steps]
-    return [
-        step for step in begins if step.startswith(READS_ALL) and "USING" not in step and step != "SCAN CONSTANT ROW"
-    ]
 
 
 @pytest.mark.parametrize("name", LISTS)
@@ -154,3 +115,10 @@ def test_what_waits_is_looked_for_among_what_waits(tables: Database) -> None:
     for name in ("sessions that wait", "devices that wait"):
         steps = look(tables, LOOKS[name])
         assert any("chunks USING INDEX ix_chunks_waiting" in step for step in steps), steps
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_texts_are_looked_through_in_order_without_the_rest_of_the_rows(tables: Database) -> None:
+    """Elsewhere in the table each row would be looked up, in the order of ids, which is random there."""
+    steps = look(tables, lambda tx: devices.page(tx, 101, q="x"))
+    assert "SCAN devices USING COVERING INDEX ix_devices_id_search" in steps
