@@ -1,5 +1,6 @@
 """Devices that send a drive and repeat what was not answered for, as the manual tells them to."""
 
+import math
 import threading
 import time
 from collections.abc import Iterator
@@ -33,6 +34,8 @@ class Tally:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
+        self.allowed: float = math.inf
+        """acknowledged chunks after which the devices pause, so that they are not done before they were disturbed"""
         self.acknowledged = 0
         self.repeated = 0
         self.statuses: set[int | str] = set()
@@ -48,6 +51,9 @@ def send_until_acknowledged(device: Device, seq: int, body: bytes, tally: Tally)
     """Send a chunk until it is durable."""
     deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
+        if tally.acknowledged >= tally.allowed:
+            time.sleep(PAUSE)
+            continue
         status = _try(device, seq, body)
         done = status in {200, 202}
         tally.note(status, done)
