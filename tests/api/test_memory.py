@@ -7,6 +7,8 @@ import pytest
 
 from api import live, metrics
 from api.services import access, presenting
+from api.services.counts import Counts
+from api.services.uses import Uses
 from core import DEFAULT, Stage, initial_state, status
 from storage import devices, installations, keys
 from storage.database import Database
@@ -28,6 +30,8 @@ EVENTS = 100
 def small_caches(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make caches so small that they are full before it is counted."""
     monkeypatch.setattr(live, "MEMORY", EVENTS)
+    monkeypatch.setattr(Counts.__init__, "__defaults__", (EVENTS,))
+    monkeypatch.setattr(Uses, "mark", lambda *_: None)  # written and forgotten every minute
 
 
 @pytest.fixture
