@@ -105,7 +105,7 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
     state = state.copy()
     rows = np.zeros((_row_limit(params, samples), _ROW))
     limit = _EVENTS_PER_FIX * samples.fix_row.size + 1
-    events = np.zeros((limit, _EVENT_ROW))
+    events = np.empty((limit, _EVENT_ROW))
     evidence = np.empty((limit, LOOKS, 2))
     counts = np.zeros(len(REJECTIONS), np.int64)
     row_count, event_count = _kernel.run(

@@ -4,6 +4,8 @@
 the quaternion on the last axis, so that they work on one rotation and on many alike. Angles in radians.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -44,12 +46,20 @@ def multiply(q: ArrayLike, p: ArrayLike) -> Floats:
 def matrix(q: ArrayLike) -> Floats:
     """Rotation matrix (..., 3, 3) of a unit quaternion (thesis C.3, scalar first)."""
     q = np.asarray(q, np.float64)
-    w, x, y, z = (q[..., i] for i in range(4))
-    r = np.empty((*q.shape[:-1], 3, 3))  # filled one by one: stacking takes ten times as long for one rotation
-    r[..., 0, 0], r[..., 0, 1], r[..., 0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
-    r[..., 1, 0], r[..., 1, 1], r[..., 1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
-    r[..., 2, 0], r[..., 2, 1], r[..., 2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+    if q.ndim == 1:
+        return np.array(_matrix(*q.tolist()))  # plain numbers: numpy's take several times as long for one rotation
+    r = np.empty((*q.shape[:-1], 3, 3))
+    for i, row in enumerate(_matrix(*(q[..., i] for i in range(4)))):
+        r[..., i, 0], r[..., i, 1], r[..., i, 2] = row
     return r
+
+
+def _matrix(w: Any, x: Any, y: Any, z: Any) -> tuple[tuple[Any, Any, Any], ...]:
+    return (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
 
 
 def from_matrix(r: ArrayLike) -> Floats:

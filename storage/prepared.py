@@ -20,18 +20,22 @@ class _Translated(NamedTuple):
     sql: str
     parameters: tuple[tuple[str, Any, _Convert], ...]
     """name, value where none is given, converter"""
-    results: tuple[_Convert, ...]
+    results: tuple[tuple[int, Callable[[Any], Any]], ...]
+    """place and converter of the columns that have one"""
 
     def bind(self, values: dict[str, Any]) -> list[Any]:
         """Give the parameters in the order of their places."""
-        given = ((values.get(name, constant), convert) for name, constant, convert in self.parameters)
-        return [value if convert is None else convert(value) for value, convert in given]
+        return [
+            values.get(name, constant) if convert is None else convert(values.get(name, constant))
+            for name, constant, convert in self.parameters
+        ]
 
     def shape(self, row: Sequence[Any]) -> tuple[Any, ...]:
         """Give the values of a row as their columns' types have them."""
-        return tuple(
-            [value if convert is None else convert(value) for value, convert in zip(row, self.results, strict=True)]
-        )
+        shaped = list(row)
+        for place, convert in self.results:
+            shaped[place] = convert(shaped[place])
+        return tuple(shaped)
 
 
 class Prepared:
@@ -72,4 +76,5 @@ def _translate(statement: Any, dialect: Dialect, names: Sequence[str]) -> _Trans
     ]
     columns = statement.selected_columns if statement.is_select else ()
     results = [column.type.dialect_impl(dialect).result_processor(dialect, None) for column in columns]
-    return _Translated(str(compiled), tuple(places), tuple(results))
+    converted = tuple((place, convert) for place, convert in enumerate(results) if convert is not None)
+    return _Translated(str(compiled), tuple(places), converted)

@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Callable
 from email.message import Message
+from functools import lru_cache
 
 from api.formats import arrow_stream, native_csv, thesis_log
 from api.formats.compression import FILE_LIMITS, UPLOAD_LIMITS, Limits, decode, sniff_encoding
@@ -62,10 +63,16 @@ def parse(
     media_type = _media_type(content_type)
     sense = _sense(course)
     content = decode(body, content_encoding, limits)
-    digest = hashlib.sha256(media_type.encode() + b"\0" + content).hexdigest()
-    return _READERS[media_type](content, limits, digest, sense)
+    return _READERS[media_type](content, limits, _digest(media_type, content), sense)
 
 
+def _digest(media_type: str, content: bytes) -> str:
+    digest = hashlib.sha256(media_type.encode() + b"\0")
+    digest.update(content)
+    return digest.hexdigest()
+
+
+@lru_cache(maxsize=64)
 def _media_type(content_type: str) -> str:
     header = Message()
     header["Content-Type"] = content_type

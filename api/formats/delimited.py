@@ -46,7 +46,7 @@ def text_content(content: bytes, limits: Limits) -> bytes:
         422 for an empty body, an image or other binary, 413 for too many lines.
     """
     content = content.removeprefix(BYTE_ORDER_MARK)
-    if not content.strip():
+    if not content or content.isspace():
         raise FormatError.unreadable(Problem(1, None, "a log", "the log is empty"))
     if b"\0" in content or not _is_utf8(content[:4096]):
         raise FormatError.unreadable(Problem(1, None, "text in UTF-8", "this is not text in UTF-8"))

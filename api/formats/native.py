@@ -118,9 +118,9 @@ class NativeTable:
         """
         time = "t" if "t" in columns else "t_ms"
         checks.refuse(_faults(columns, time), locate)
-        self._t = columns[time] * (1.0 if time == "t" else 1e-3)
-        self._f_s = np.column_stack([columns[name] for name in ACCELERATION])
-        self._w_s = np.column_stack([columns[name] for name in RATE]) if "gx" in columns else None
+        self._t = columns[time] if time == "t" else columns[time] * 1e-3
+        self._f_s = _rows(columns, ACCELERATION)
+        self._w_s = _rows(columns, RATE) if "gx" in columns else None
         self._fix_rows = np.flatnonzero(columns["fix"] == 1)
         self._none_rows = np.flatnonzero(columns["fix"] == 0)
         self._fix = _fix_table(columns, self._fix_rows)
@@ -130,6 +130,14 @@ class NativeTable:
         none_rows = without_fix(self._t, self._fix_rows, self._none_rows, context)
         samples = make_samples(self._t, self._f_s, self._w_s, self._fix_rows, self._fix, none_rows)
         return Reading(samples, {}, context)
+
+
+def _rows(columns: Columns, names: Sequence[str]) -> Floats:
+    """Put columns side by side, (N, columns)."""
+    rows = np.empty((columns[names[0]].size, len(names)))
+    for i, name in enumerate(names):
+        rows[:, i] = columns[name]
+    return rows
 
 
 def _faults(columns: Columns, time: str) -> list[Fault]:

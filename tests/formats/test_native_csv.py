@@ -350,3 +350,9 @@ def test_names_cannot_steer_a_terminal_or_begin_a_line() -> None:
     (notice,) = read("t,ax,ay,az,fix,speed,course,\x1b[31m\n0,0,0,9.8,1,3,90,\n").notices
     assert notice.isprintable()
     assert "\\x1b[31m" in notice
+
+
+def test_readings_whose_sum_is_not_finite_are_finite() -> None:
+    samples = read("t,ax,ay,az,fix,speed,course\n0,1e308,0,9.8,1,0,0\n1,1e308,0,9.8,,,\n").samples().samples
+    assert samples.f_s[:, 0].tolist() == [1e308, 1e308]
+    assert problem("t,ax,ay,az,fix,speed,course\n0,inf,0,9.8,1,0,0\n1,-inf,0,9.8,,,\n").column == "ax"
