@@ -22,6 +22,7 @@ from api.live import Hub
 from api.observing import Observing
 from api.overload import Gate, Limits
 from api.routes import api, service
+from api.routes.plain_uploads import PlainUploads
 from api.services import housekeeping, startup
 from api.services.context import Context, utc_now
 from api.services.limiting import Rates
@@ -60,6 +61,7 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
         generate_unique_id_function=lambda route: route.name,
     )
     errors.install(app)
+    app.router.routes.append(PlainUploads())
     app.include_router(service.router)
     app.include_router(api)
     app.router.default = GZipMiddleware(page.Page(app.router.default, page.STATIC))

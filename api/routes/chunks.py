@@ -21,6 +21,7 @@ BODY: dict[str, Any] = {
     }
 }
 MAX_SEQ = 2**31 - 2
+Course = Literal["clockwise", "anticlockwise", "auto"]
 
 
 @router.post(
@@ -37,9 +38,7 @@ async def upload_chunk(
     context: CurrentContext,
     session: Annotated[schemas.SessionName, Query(description="Made by the device at power-up.")],
     seq: Annotated[int, Query(ge=0, le=MAX_SEQ, description="Number of the chunk in its session, from 0.")],
-    course: Annotated[
-        Literal["clockwise", "anticlockwise", "auto"], Query(description="Sense of the course in a thesis log.")
-    ] = "auto",
+    course: Annotated[Course, Query(description="Sense of the course in a thesis log.")] = "auto",
     content_type: Annotated[str, Header(include_in_schema=False)] = "",
     content_encoding: Annotated[str | None, Header(description="`gzip`, `zstd` or none.")] = None,
 ) -> Response:
