@@ -50,7 +50,7 @@ check: lint  ## lint, types and unit tests in under 3 minutes
 	cd web && npm test
 
 lock:  ## pin what pyproject.toml allows
-	uv pip compile -q pyproject.toml --extra dev --universal --python-version 3.11 --no-header --no-annotate -o requirements.lock
+	uv pip compile -q pyproject.toml --extra dev --extra otel --universal --python-version 3.11 --no-header --no-annotate -o requirements.lock
 
 # The kernel is compiled, so its coverage is seen by running it uncompiled, beside the browser tests.
 test: setup  ## everything
