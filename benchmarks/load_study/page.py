@@ -39,7 +39,7 @@ COLUMNS = [
 ]
 ERRORS = """"Errors" are answers other than 200, chunks without an answer, and devices of which something acknowledged
 is not stored exactly once. CPU is that of all the service's processes and of the database, from the end of the warm-up
-to the end of the run."""
+to the end of the run. It is divided by all answers: where many are refusals (503), which cost little, it says less than a chunk costs."""
 STAGE_TEXT = """### Where the CPU of a chunk goes
 
 Median ms of the functions of an upload, called one after the other in one process on SQLite. The last line is what the
@@ -66,7 +66,13 @@ def _target(name: str, cell: Cell, study: Study) -> Target:
         return Target(what, f"≥ {cell.devices}", study.skipped.get(name, "–"), None)
     best = largest_held(study.runs[name], cell.limit)
     held = 0 if best is None else best.devices
-    return Target(what, f"≥ {cell.devices}", str(held), held >= cell.devices)
+    return Target(what, f"≥ {cell.devices}", held_words(study.runs[name], cell.limit), held >= cell.devices)
+
+
+def held_words(results: list[Result], limit: float) -> str:
+    """Say how many devices were held, or below how many that lies."""
+    best = largest_held(results, limit)
+    return str(best.devices) if best is not None else f"< {min(result.devices for result in results)}"
 
 
 def row(name: str, result: Result) -> list[str]:
@@ -126,9 +132,9 @@ def ratios(study: Study) -> list[list[str]]:
         return []
     own, naive = (largest_held(study.runs[name], CELLS[name].limit) for name in (BESIDE, NAIVE))
     own_cpu, naive_cpu = (1e3 * run.server_cpu for name in (BESIDE, NAIVE) if (run := typical(name, study)))
-    held = [0 if run is None else run.devices for run in (own, naive)]
+    words = [held_words(study.runs[name], CELLS[name].limit) for name in (BESIDE, NAIVE)]
     return [
-        ["devices held", *map(str, held), f"×{number(held[0] / held[1])}" if held[1] else "–"],
+        ["devices held", *words, f"×{number(own.devices / naive.devices)}" if own and naive else "–"],
         ["CPU a chunk, ms", number(own_cpu), number(naive_cpu), f"×{number(naive_cpu / own_cpu)}"],
     ]
 
