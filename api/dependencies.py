@@ -45,7 +45,6 @@ def get_rates(request: Request) -> Rates:
 
 CurrentContext = Annotated[Context, Depends(get_context)]
 CurrentHub = Annotated[Hub, Depends(get_hub)]
-CurrentRates = Annotated[Rates, Depends(get_rates)]
 
 
 def get_principal(

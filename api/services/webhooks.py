@@ -95,7 +95,7 @@ def test(context: Context, principal: Principal, pk: int) -> schemas.WebhookTest
     with context.database.read() as tx:
         webhook = _found(tx, pk)
     data = {"webhook_id": pk, "message": TEST_TEXT}
-    row = webhooks_queue.delivery(pk, "test", webhooks_queue.message("test", data, now), now)
+    row = webhooks_queue.delivery(pk, webhooks_queue.TEST, webhooks_queue.message(webhooks_queue.TEST, data, now), now)
     with Sender(context.settings.webhook_allow_private) as sender:
         result = sender.send(webhook, row["message_id"], row["payload"], now)
     with context.database.write() as tx:

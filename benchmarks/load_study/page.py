@@ -39,8 +39,7 @@ COLUMNS = [
 ]
 ERRORS = """"Errors" are answers other than 200, chunks without an answer, and devices of which something acknowledged
 is not stored exactly once. CPU is that of all the service's processes and of the database, from the end of the warm-up
-to the end of the run. It is divided by all answers: where many are refusals (503), which cost little, it says less than
-a chunk costs."""
+to the end of the run, for each chunk that was taken in: where many are refused (503), refusing is in it."""
 STAGE_TEXT = """### Where the CPU of a chunk goes
 
 Median ms of the functions of an upload, called one after the other in one process on SQLite. The last line is what the

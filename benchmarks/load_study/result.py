@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from benchmarks.load_study.pacing import PERIOD, Answer, Latency, Plan, errors, measured, quantiles
+from benchmarks.load_study.pacing import OK, PERIOD, Answer, Latency, Plan, errors, measured, quantiles
 
 
 class Result(NamedTuple):
@@ -71,7 +71,7 @@ def conclude(traffic: Traffic, plan: Plan, first: Meter, last: Meter, rss: list[
     plan = plan.ended(traffic.ended)
     due = measured(traffic.answers, plan)
     spent = Meter(*(after - before for before, after in zip(first, last, strict=True)))
-    count = max(1, sum(plan.warm_up <= a.due + a.latency < plan.seconds for a in traffic.answers))
+    count = max(1, sum(plan.warm_up <= a.due + a.latency < plan.seconds for a in traffic.answers if a.status == OK))
     return Result(
         devices=plan.devices,
         seconds=plan.measure,

@@ -97,6 +97,12 @@ def test_figures_are_those_between_the_meters() -> None:
     assert (seen.chunks, seen.errors, seen.unanswered) == (2, {"503": 1}, 2)
 
 
+def test_what_was_refused_is_no_chunk_that_shares_the_cost() -> None:
+    answers = [Answer(30.0, 0.3, 200), Answer(31.0, 0.1, 503), Answer(32.0, 0.1, 503)]
+    seen = conclude(Traffic(answers, 0, 4, 80.0), PLAN, Meter(0, 0, 0, 0), Meter(0.012, 0, 0, 0), [100.0])
+    assert (seen.server_cpu, seen.served) == (0.012, 1.0)
+
+
 def test_a_run_without_hope_counts_for_the_time_it_took() -> None:
     answers = [Answer(25.0, 2.0, 200), Answer(30.0, 9.0, 200)]
     seen = conclude(Traffic(answers, 50, 4, 32.0), PLAN, Meter(0, 0, 0, 0), Meter(6.0, 0, 0, 0), [100.0])
