@@ -14,8 +14,14 @@ from api.schemas import DEVICE_ID
 from api.services import access, limiting, paging, sign_ins
 from api.services.access import Principal, Role
 from api.services.context import Context
-from api.services.errors import ForbiddenError, NotFoundError, StartingError, TooLargeError, UnauthenticatedError
-from api.services.fleet import UNKNOWN_DEVICE
+from api.services.errors import (
+    UNKNOWN_DEVICE,
+    ForbiddenError,
+    NotFoundError,
+    StartingError,
+    TooLargeError,
+    UnauthenticatedError,
+)
 from api.services.limiting import Rates
 
 COOKIE = "livella_session"

@@ -18,6 +18,8 @@ from prometheus_client.process_collector import ProcessCollector
 from sqlalchemy import event
 from sqlalchemy.engine import Engine, ExceptionContext
 
+from storage import prepared
+
 DIRECTORY = "PROMETHEUS_MULTIPROC_DIR"
 FORMATS = {
     "text/csv": "csv",
@@ -109,7 +111,14 @@ def estimator() -> Iterator[None]:
 
 @event.listens_for(Engine, "handle_error")
 def _count_error(context: ExceptionContext) -> None:
-    DATABASE_ERRORS.labels(type(context.sqlalchemy_exception or context.original_exception).__name__).inc()
+    _count(context.sqlalchemy_exception or context.original_exception)
+
+
+def _count(error: BaseException) -> None:
+    DATABASE_ERRORS.labels(type(error).__name__).inc()
+
+
+prepared.on_error.append(_count)
 
 
 def several_processes() -> bool:

@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 from sqlalchemy.engine import Connection, Dialect
 
+on_error: list[Callable[[Exception], None]] = []
+"""Told of every error, as SQLAlchemy's event `handle_error` tells of those of all other statements."""
 _Convert = Callable[[Any], Any] | None
 
 
@@ -62,9 +64,10 @@ def execute(connection: Connection, sql: str, parameters: Sequence[Any] = ()) ->
     try:
         found: list[Any] = driver.execute(sql, parameters).fetchall()
     except sqlite3.Error as error:
-        raise sa.exc.DBAPIError.instance(
-            sql, tuple(parameters), error, sqlite3.Error, dialect=connection.dialect
-        ) from error
+        wrapped = sa.exc.DBAPIError.instance(sql, tuple(parameters), error, sqlite3.Error, dialect=connection.dialect)
+        for told in on_error:
+            told(wrapped)
+        raise wrapped from error
     return found
 
 

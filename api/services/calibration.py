@@ -10,7 +10,7 @@ from api import metrics, schemas
 from api.formats.log import Reading
 from api.services import alerting, findings, history, presenting, publishing, rules, watching
 from api.services.context import Context
-from api.services.errors import NotFoundError, NotStillError, UnusableError
+from api.services.errors import UNKNOWN_DEVICE, NotFoundError, NotStillError, UnusableError
 from api.services.foresight import Foresight, advance
 from storage import installations, mounts
 from storage.database import WriteSession
@@ -46,7 +46,7 @@ class Calibration:
         """Lock the device and load its installation."""
         row = installations.lock(tx, device_id)
         if row is None:
-            raise NotFoundError("There is no such device.")
+            raise NotFoundError(UNKNOWN_DEVICE)
         return cls(tx, context, device_id, row)
 
     @property

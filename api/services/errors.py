@@ -1,5 +1,7 @@
 """What a service refuses to do, as values of one family; `api/errors.py` says which HTTP status each becomes."""
 
+UNKNOWN_DEVICE = "There is no such device."
+
 
 class ServiceError(Exception):
     """Base: `detail` is a sentence for the caller, `kind` the last part of the problem's type."""

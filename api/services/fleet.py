@@ -12,12 +12,10 @@ from api.services import auditing, keyring, presenting, publishing
 from api.services.access import Principal, Role
 from api.services.calibration import STAGES, Calibration
 from api.services.context import Context
-from api.services.errors import ConflictError, NotFoundError
+from api.services.errors import UNKNOWN_DEVICE, ConflictError, NotFoundError
 from core import Stage, initial_state, status
 from storage import alerts, devices, installations
 from storage.database import ReadSession, WriteSession
-
-UNKNOWN_DEVICE = keyring.UNKNOWN_DEVICE
 
 
 def register(

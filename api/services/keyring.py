@@ -7,11 +7,9 @@ from api import schemas
 from api.services import access, auditing
 from api.services.access import Principal, Role
 from api.services.context import Context
-from api.services.errors import ExpiryError, LastAdminError, NotFoundError
+from api.services.errors import UNKNOWN_DEVICE, ExpiryError, LastAdminError, NotFoundError
 from storage import devices, keys
 from storage.database import ReadSession, WriteSession
-
-UNKNOWN_DEVICE = "There is no such device."
 
 
 class Wanted(NamedTuple):

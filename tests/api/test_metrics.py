@@ -5,8 +5,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import sqlalchemy as sa
 from prometheus_client.parser import text_string_to_metric_families
 from pydantic import SecretStr
+from sqlalchemy.exc import IntegrityError
 from starlette.testclient import TestClient
 
 from api import metrics, schemas
@@ -18,6 +20,8 @@ from api.services.monitoring import KEPT, Fleet
 from api.settings import Settings
 from storage import alerts, devices
 from storage.migrate import upgrade
+from storage.models import devices as device_table
+from storage.prepared import Prepared
 from tests.conftest import Clock
 from tests.drives import chunks
 from tests.service import Api
@@ -165,3 +169,22 @@ def test_a_token_can_be_asked_for(settings: Settings, clock: Clock) -> None:
         assert client.get("/metrics").status_code == 401
         assert client.get("/metrics", headers={"Authorization": "Bearer wrong"}).status_code == 401
         assert client.get("/metrics", headers={"Authorization": f"Bearer {token}"}).status_code == 200
+
+
+def database_errors() -> float:
+    return value(figures(metrics.render().decode()), "livella_database_errors_total", kind="IntegrityError")
+
+
+def test_errors_of_the_database_are_counted(context: Context) -> None:
+    before, statement = database_errors(), sa.insert(device_table)
+    with pytest.raises(IntegrityError), context.database.write() as tx:
+        tx.execute(statement, id="a", name=None, created_at=context.clock(), search="")
+    assert database_errors() == before + 1
+
+
+def test_errors_of_prepared_statements_are_counted_too(context: Context) -> None:
+    """They reach SQLite's driver without SQLAlchemy."""
+    before, statement = database_errors(), Prepared(sa.insert(device_table))
+    with pytest.raises(IntegrityError), context.database.write() as tx:
+        tx.run(statement, id="a", name=None, created_at=context.clock(), search="")
+    assert database_errors() == before + 1
