@@ -22,6 +22,7 @@ from api.live import Hub
 from api.observing import Observing
 from api.overload import Gate, Limits
 from api.routes import api, service
+from api.routes.chunks import Uploads, open_uploads
 from api.routes.plain_uploads import PlainUploads
 from api.services import housekeeping, startup
 from api.services.context import Context, utc_now
@@ -41,6 +42,7 @@ class State(TypedDict):
     hub: Hub
     ready: threading.Event
     gate: Gate
+    uploads: Uploads
     watch: service.Watch
     rates: Rates
 
@@ -95,15 +97,25 @@ async def _lifespan(
     if first_key is not None:
         print(f"First admin key, shown only once: {first_key}", file=sys.stderr, flush=True)
     ready = threading.Event()
+    uploads = open_uploads(context)
     await hub.start()
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(_warm_up, context, ready)
         tasks.start_soon(hub.run)
         tasks.start_soon(housekeeping.run, context)
         with _ending_with(hub.close):
-            yield State(context=context, hub=hub, ready=ready, gate=gate, watch=service.Watch(context), rates=rates)
+            yield State(
+                context=context,
+                hub=hub,
+                ready=ready,
+                gate=gate,
+                uploads=uploads,
+                watch=service.Watch(context),
+                rates=rates,
+            )
         hub.close()
         tasks.cancel_scope.cancel()  # threads at work are waited for
+    await to_thread.run_sync(uploads.close)
     await to_thread.run_sync(housekeeping.finish, context)
     context.database.close()
 

@@ -51,19 +51,39 @@ DURATION = Histogram("livella_http_request_seconds", "Time of a request.", ["rou
 DATABASE_ERRORS = Counter("livella_database_errors", "Errors of the database.", ["kind"], registry=_own)
 
 
-LAPS = {stage: STAGES.labels(stage) for stage in ("parse", "foresee", "wait", "store")}
+LAPS = {stage: STAGES.labels(stage) for stage in ("parse", "foresee", "wait", "store", "commit")}
+
+
+class _OfThread(threading.local):
+    upload: "Upload | None" = None
+
+
+_of_thread = _OfThread()
 
 
 class Upload:
-    """Measures one upload, lap by lap; the estimator's time is in none of them."""
+    """Measures one upload, lap by lap; the estimator's time is in none of them.
+
+    Entered while a thread works on the upload: what the estimator needs meanwhile is this one's.
+    """
 
     def __init__(self, content_type: str) -> None:
         self.format = FORMATS.get(content_type.partition(";")[0].strip().lower(), "other")
         self.filter_seconds = 0.0
         self._since = time.perf_counter()
 
+    def __enter__(self) -> None:
+        _of_thread.upload = self
+
+    def __exit__(self, *_: object) -> None:
+        _of_thread.upload = None
+
+    def start(self) -> None:
+        """A stage begins; what passed since the last lap is in none."""
+        self._since = time.perf_counter()
+
     def lap(self, stage: str) -> None:
-        """A stage has ended."""
+        """A stage has ended, and the next begins."""
         now = time.perf_counter()
         LAPS[stage].observe(max(now - self._since - self.filter_seconds, 0.0))
         self._since, self.filter_seconds = now, 0.0
@@ -77,25 +97,10 @@ class Upload:
             REJECTED.labels(reason).inc(number)
 
 
-class _OfThread(threading.local):
-    upload: Upload | None = None
-
-
-_of_thread = _OfThread()
-
-
-@contextmanager
-def upload(content_type: str) -> Iterator[Upload]:
-    """Measure the upload that this thread works on, and count it when it is refused."""
-    _of_thread.upload = Upload(content_type)
-    try:
-        yield _of_thread.upload
-    except Exception as error:
-        status = getattr(error, "status", None)
-        REFUSED.labels(getattr(error, "kind", None) or (f"log-{status}" if status else "fault")).inc()
-        raise
-    finally:
-        _of_thread.upload = None
+def refused(error: Exception) -> None:
+    """Count an upload that was refused, or failed."""
+    status = getattr(error, "status", None)
+    REFUSED.labels(getattr(error, "kind", None) or (f"log-{status}" if status else "fault")).inc()
 
 
 @contextmanager

@@ -4,17 +4,15 @@ import asyncio
 import re
 import secrets
 import sys
-from collections.abc import Callable
-from typing import Any, NoReturn, TypeVar
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import NoReturn
 
-from anyio import CapacityLimiter, to_thread
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from api import errors, metrics
 from api.settings import Settings
-
-T = TypeVar("T")
 
 UPLOAD = re.compile(r"/api/v1/devices/[^/]+/chunks")
 MAX_OTHER_BYTES = 1024 * 1024
@@ -30,7 +28,6 @@ class Gate:
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
-        self.threads = CapacityLimiter(settings.upload_threads)
         self.uploads = 0
         self.held = 0
 
@@ -39,14 +36,15 @@ class Gate:
         """True when no upload more is taken on."""
         return self.uploads >= self.settings.max_uploads
 
-    async def work(self, work: Callable[..., T], *arguments: Any) -> T:
-        """Work on an upload in a thread when its turn comes; threads of other requests are not taken up by it."""
+    @contextmanager
+    def upload(self) -> Iterator[None]:
+        """Count an upload in work or waiting; refuse one that is too many."""
         if self.is_full:
             refuse("uploads")
         self.uploads += 1
         metrics.QUEUE.inc()
         try:
-            return await to_thread.run_sync(work, *arguments, limiter=self.threads)
+            yield
         finally:
             self.uploads -= 1
             metrics.QUEUE.dec()

@@ -89,8 +89,20 @@ class Database:
     @contextmanager
     def write(self) -> Iterator[WriteSession]:
         """Open a transaction, committed durably when the block ends and rolled back when it raises."""
-        with self._transaction() as connection:
-            yield WriteSession(connection)
+        with _write_session(self._transaction()) as tx:
+            yield tx
+
+    @contextmanager
+    def together(self) -> Iterator[Callable[[], AbstractContextManager[WriteSession]]]:
+        """Give what opens transactions, each on its own whether it takes effect.
+
+        On SQLite all become durable together when the block ends without an error, elsewhere each when it ends.
+        """
+        if self._group is None:
+            yield self.write
+            return
+        with self._group.together(BUSY_TIMEOUT) as group:
+            yield lambda: _write_session(group.member())
 
     def _transaction(self) -> AbstractContextManager[Connection]:
         return self._writes.begin() if self._group is None else self._group.transaction(BUSY_TIMEOUT)
@@ -101,6 +113,12 @@ class Database:
         self._writes.dispose()
         if self._group is not None:
             self._group.close()
+
+
+@contextmanager
+def _write_session(transaction: AbstractContextManager[Connection]) -> Iterator[WriteSession]:
+    with transaction as connection:
+        yield WriteSession(connection)
 
 
 def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:

@@ -32,6 +32,8 @@ class Group:
     @contextmanager
     def member(self) -> Iterator[Connection]:
         """Add a transaction; when the block raises, only this one is undone."""
+        if self.error is not None:
+            raise self.error
         prepared.execute(self.connection, "SAVEPOINT member")
         try:
             yield self.connection
@@ -81,11 +83,16 @@ class GroupCommit:
     @contextmanager
     def transaction(self, seconds: float) -> Iterator[Connection]:
         """Open a transaction, durable when the block ends without an error; SQLAlchemy's `TimeoutError` if busy."""
+        with self.together(seconds) as group, group.member() as connection:
+            yield connection
+
+    @contextmanager
+    def together(self, seconds: float) -> Iterator[Group]:
+        """Take one turn for several transactions, members of a group, durable when the block ends without an error."""
         self._take_turn(seconds)
         try:
             group = self._group = self._group or self._open(seconds)
-            with group.member() as connection:
-                yield connection
+            yield group
         finally:
             self._end_turn()
         group.wait()

@@ -5,13 +5,15 @@ their size is not known before they are unpacked (compress the body with gzip or
 """
 
 import struct
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from api.formats import checks
 from api.formats.compression import Limits
-from api.formats.delimited import Cell, Columns, Floats
+from api.formats.delimited import Cell, Columns, Table
 from api.formats.errors import FormatError, Problem, printable
 from api.formats.log import ParsedLog
 from api.formats.native import READ, NativeTable, check_names
@@ -38,11 +40,10 @@ def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
     except (pa.ArrowException, OSError, struct.error, IndexError, UnicodeDecodeError) as error:
         message = f"expected an Arrow IPC stream: {printable(str(error))}"
         raise FormatError.unreadable(Problem(None, None, "an Arrow IPC stream", message)) from error
-    columns = _columns(batches)
-    rows = columns["fix"].size
-    checks.refuse_empty(rows, line=1)
-    table = NativeTable(columns, lambda row, column: Cell(row + 1, _shown(columns, row, column)))
-    return ParsedLog(MEDIA_TYPE, digest, notices, rows, table.read)
+    checks.refuse_empty(batches.num_rows, line=1)
+    table = _table(batches)
+    sound = NativeTable(table, lambda row, column: Cell(row + 1, _shown(table.columns, row, column)))
+    return ParsedLog(MEDIA_TYPE, digest, notices, table.rows, sound.read)
 
 
 def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, tuple[str, ...]]:
@@ -66,16 +67,19 @@ def _check_types(schema: pa.Schema) -> None:
             raise FormatError.unreadable(Problem(None, printable(field.name), "numbers", message))
 
 
-def _columns(table: pa.Table) -> Columns:
-    names = [name for name in table.column_names if name in READ]
-    return {name: _floats(table[name].combine_chunks()) for name in names}
+def _table(batches: pa.Table) -> Table:
+    names = tuple(name for name in batches.column_names if name in READ)
+    values = np.empty((len(names), batches.num_rows))
+    for row, name in zip(values, names, strict=True):
+        row[:] = _numbers(batches[name].combine_chunks())
+    return Table(names, values)
 
 
-def _floats(column: pa.Array) -> Floats:
+def _numbers(column: pa.Array) -> NDArray[Any]:
     if not pa.types.is_floating(column.type):  # numpy is quicker with those, and has no null for the others
         column = column.cast(pa.float64(), safe=False)
-    values = column.to_numpy(zero_copy_only=False)
-    return np.ascontiguousarray(values, np.float64)
+    values: NDArray[Any] = column.to_numpy(zero_copy_only=False)
+    return values
 
 
 def _shown(columns: Columns, row: int, column: str) -> str:

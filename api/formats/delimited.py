@@ -23,6 +23,25 @@ from api.formats.errors import FormatError, Problem
 Floats = NDArray[np.float64]
 Columns = dict[str, Floats]
 
+
+class Table(NamedTuple):
+    """Columns of equal length."""
+
+    names: tuple[str, ...]
+    values: Floats
+    """(names, N), contiguous; NaN for an empty cell"""
+
+    @property
+    def rows(self) -> int:
+        """Length of the columns."""
+        return int(self.values.shape[1])
+
+    @property
+    def columns(self) -> Columns:
+        """The columns by name, (N,) each."""
+        return dict(zip(self.names, self.values, strict=True))
+
+
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _NUMBER_CHARACTERS = b"0123456789+-.eE,; \t\r\n"
 _MAX_HARD = 8192
@@ -73,22 +92,21 @@ class DelimitedText:
     header_lines: int
     """lines before the first row"""
 
-    def columns(self, wanted: tuple[str, ...]) -> Columns:
-        """Read the wanted columns, (N,) each, NaN for an empty cell.
+    def read(self, wanted: tuple[str, ...]) -> Table:
+        """Read the wanted columns.
 
         Raises
         ------
         FormatError
             422 with line and column: a cell that is not a number, a line with too few or too many cells.
         """
-        columns = self._compiled(wanted)
-        if columns is not None:
-            return columns
-        try:
-            table = self._quick(wanted)
-        except pa.ArrowInvalid:
-            return self._patient(wanted)
-        return {name: table[name].to_numpy() for name in wanted}
+        values = self._compiled(wanted)
+        if values is None:
+            try:
+                values = self._quick(wanted)
+            except pa.ArrowInvalid:
+                values = self._patient(wanted)
+        return Table(wanted, np.ascontiguousarray(values))
 
     def cell(self, row: int, column: str) -> Cell:
         """Give line number and text of a cell, for a message; a column that is not there is empty everywhere."""
@@ -102,29 +120,33 @@ class DelimitedText:
             return ""
         return self._split(line)[self.names.index(column)].decode(errors="replace").strip()
 
-    def _compiled(self, wanted: tuple[str, ...]) -> Columns | None:
+    def _compiled(self, wanted: tuple[str, ...]) -> Floats | None:
         """Read what nearly every log is; None for one that needs more."""
         start = self._start()
-        bytes_per_row = len(self.names)  # at least: a delimiter or an end of line after each cell
         text = np.frombuffer(self.content, np.uint8)
-        line_ends = int(np.count_nonzero(text == ord("\n"))) or int(np.count_nonzero(text == ord("\r")))
-        size = min(text.size // bytes_per_row, line_ends) + 1
         target = np.array([wanted.index(name) if name in wanted else -1 for name in self.names])
-        values, hard = np.empty((len(wanted), size)), np.empty((_MAX_HARD, 4), np.int64)
+        values, hard = np.empty((len(wanted), self._most_rows(text, start))), np.empty((_MAX_HARD, 4), np.int64)
         rows, hards = _kernel.read(text, start, ord(self.delimiter), target, values, hard)
         if rows == _kernel.ODD:
             return None
         for column, row, begin, end in hard[:hards].tolist():
             values[column, row] = float(self.content[begin:end])
-        return dict(zip(wanted, values[:, :rows], strict=True))
+        return values[:, :rows]
+
+    def _most_rows(self, text: NDArray[np.uint8], start: int) -> int:
+        """Tell how many rows there can be, which is how many there are when no line is blank."""
+        line_ends = _kernel.count(text, start, ord("\n")) or _kernel.count(text, start, ord("\r"))
+        after_last = 0 if self.content.endswith((b"\n", b"\r")) else 1
+        bytes_per_row = len(self.names)  # at least: a delimiter or an end of line after each cell
+        return min(int(line_ends) + after_last, (text.size - start) // bytes_per_row + 1)
 
     def _start(self) -> int:
         """Tell where the first row begins."""
         ends = islice(_LINE_END.finditer(self.content), self.header_lines)
         return max((end.end() for end in ends), default=len(self.content) if self.header_lines else 0)
 
-    def _quick(self, wanted: tuple[str, ...]) -> pa.Table:
-        return pa.csv.read_csv(
+    def _quick(self, wanted: tuple[str, ...]) -> Floats:
+        table = pa.csv.read_csv(
             pa.BufferReader(self.content),
             read_options=pa.csv.ReadOptions(
                 column_names=self.names, skip_rows=self.header_lines, use_threads=False, block_size=4 * 1024 * 1024
@@ -134,8 +156,9 @@ class DelimitedText:
                 include_columns=wanted, column_types=dict.fromkeys(wanted, pa.float64()), null_values=[""]
             ),
         )
+        return np.array([table[name].to_numpy() for name in wanted])
 
-    def _patient(self, wanted: tuple[str, ...]) -> Columns:
+    def _patient(self, wanted: tuple[str, ...]) -> Floats:
         places = [(name, self.names.index(name)) for name in wanted]
         values: list[list[float]] = []
         for line, text in self._rows():
@@ -143,8 +166,7 @@ class DelimitedText:
             if len(cells) != len(self.names):
                 raise FormatError.unreadable(_ragged(line, len(self.names), len(cells)))
             values.append([_number(cells[place], line, name) for name, place in places])
-        table = np.array(values, np.float64).reshape(-1, len(wanted))
-        return {name: np.ascontiguousarray(column) for name, column in zip(wanted, table.T, strict=True)}
+        return np.array(values, np.float64).reshape(-1, len(wanted)).T
 
     def _rows(self) -> Iterator[tuple[int, bytes]]:
         """Yield line number and text of the lines with something on them."""

@@ -6,9 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from api.formats import checks
+from api.formats import _native_kernel, checks
 from api.formats.checks import Fault, Locate, Rows
-from api.formats.delimited import Columns, Floats
+from api.formats.delimited import Columns, Table
 from api.formats.errors import FormatError, Problem, printable
 from api.formats.log import Context, Reading
 from api.formats.reports import make_samples, without_fix
@@ -20,6 +20,8 @@ POSITION = ("lat", "lon")
 VELOCITY = ("speed", "course")
 GPS = ("lat", "lon", "alt", "speed", "course", "vz", "speed_acc", "course_acc")
 """in the order of `core.FIX_COLUMNS`"""
+_PACKED = (*ACCELERATION, *RATE, "fix", *GPS)
+"""after the time in the order of `_native_kernel`"""
 READ = (*TIME, *ACCELERATION, *RATE, "fix", *GPS)
 NOT_READ = ("mx", "my", "mz", "temp", "steer")
 """known columns that the estimator does not use"""
@@ -101,13 +103,13 @@ def _known_name(name: str) -> str | None:
 class NativeTable:
     """The columns of one chunk, checked."""
 
-    def __init__(self, columns: Columns, locate: Locate) -> None:
+    def __init__(self, table: Table, locate: Locate) -> None:
         """Check the columns and convert them to SI units.
 
         Parameters
         ----------
-        columns
-            (N,) each, in the units of the format, NaN for an empty cell
+        table
+            the columns, in the units of the format
         locate
             gives the place of a cell in the log, for messages
 
@@ -116,28 +118,39 @@ class NativeTable:
         FormatError
             422 with line, column and what was expected
         """
-        time = "t" if "t" in columns else "t_ms"
-        checks.refuse(_faults(columns, time), locate)
-        self._t = columns[time] if time == "t" else columns[time] * 1e-3
-        self._f_s = _rows(columns, ACCELERATION)
-        self._w_s = _rows(columns, RATE) if "gx" in columns else None
-        self._fix_rows = np.flatnonzero(columns["fix"] == 1)
-        self._none_rows = np.flatnonzero(columns["fix"] == 0)
-        self._fix = _fix_table(columns, self._fix_rows)
+        time = "t" if "t" in table.names else "t_ms"
+        n, has_rates = table.rows, "gx" in table.names
+        place = [table.names.index(name) if name in table.names else -1 for name in (time, *_PACKED)]
+        self._t, self._f_s = np.empty(n), np.empty((n, 3))
+        self._w_s = np.empty((n, 3)) if has_rates else None
+        fix_rows, none_rows, fix = np.empty(n, np.int64), np.empty(n, np.int64), np.empty((n, len(GPS)))
+        fixes, nones = _native_kernel.pack(
+            table.values,
+            np.array(place),
+            1.0 if time == "t" else 1e-3,
+            SLOW,
+            self._t,
+            self._f_s,
+            self._f_s if self._w_s is None else self._w_s,
+            fix_rows,
+            none_rows,
+            fix,
+        )
+        if fixes < 0:
+            checks.refuse(_faults(table.columns, time), locate)
+            raise AssertionError("a sound chunk was found to be none")
+        # copies: what was set aside for the rows that there might have been is given back
+        self._fix_rows, self._none_rows, self._fix = (
+            fix_rows[:fixes].copy(),
+            none_rows[:nones].copy(),
+            fix[:fixes].copy(),
+        )
 
     def read(self, context: Context) -> Reading:
         """Give the samples; `context` keeps the time of the last fix."""
         none_rows = without_fix(self._t, self._fix_rows, self._none_rows, context)
         samples = make_samples(self._t, self._f_s, self._w_s, self._fix_rows, self._fix, none_rows)
         return Reading(samples, {}, context)
-
-
-def _rows(columns: Columns, names: Sequence[str]) -> Floats:
-    """Put columns side by side, (N, columns)."""
-    rows = np.empty((columns[names[0]].size, len(names)))
-    for i, name in enumerate(names):
-        rows[:, i] = columns[name]
-    return rows
 
 
 def _faults(columns: Columns, time: str) -> list[Fault]:
@@ -186,13 +199,3 @@ def _incomplete_fixes(fix: Columns, rows: Rows) -> list[Fault]:
         *checks.first(no_lat & no_lon & no_speed, "speed", f"a speed{needed}", rows),
         *checks.first(no_lat & no_lon & no_course, "course", f"a course{needed}", rows),
     ]
-
-
-def _fix_table(columns: Columns, rows: Rows) -> Floats:
-    """Give the fixes (M, 8), radians, as in `core.FIX_COLUMNS`."""
-    empty = np.full(rows.size, np.nan)
-    fix = np.column_stack([columns[name][rows] if name in columns else empty for name in GPS])
-    angles = [GPS.index(name) for name in ("lat", "lon", "course", "course_acc")]
-    fix[:, angles] = np.radians(fix[:, angles])
-    fix[:, GPS.index("course")] %= 2 * np.pi
-    return fix

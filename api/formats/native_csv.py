@@ -24,12 +24,10 @@ def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
     names = _names(next(lines(content)))
     notices = check_names(names, line=1)
     text = DelimitedText(content, names, ",", header_lines=1)
-    columns = text.columns(tuple(name for name in names if name in READ))
-    rows = columns["fix"].size
-    checks.refuse_empty(rows, line=2)
-    checks.refuse_rows(rows, limits)
-    table = NativeTable(columns, text.cell)
-    return ParsedLog(MEDIA_TYPE, digest, notices, rows, table.read)
+    table = text.read(tuple(name for name in names if name in READ))
+    checks.refuse_empty(table.rows, line=2)
+    checks.refuse_rows(table.rows, limits)
+    return ParsedLog(MEDIA_TYPE, digest, notices, table.rows, NativeTable(table, text.cell).read)
 
 
 def _names(header: bytes) -> tuple[str, ...]:

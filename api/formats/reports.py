@@ -52,6 +52,8 @@ def _thin(t: Floats, rows: Rows, due: float) -> Rows:
 
 def make_samples(t: Floats, f_s: Floats, w_s: Floats | None, fix_rows: Rows, fix: Floats, none_rows: Rows) -> Samples:
     """Put fixes and reports without a fix into one table in the order of their rows."""
+    if not none_rows.size:
+        return Samples.make(t, f_s, w_s, fix_rows, np.ones(fix_rows.size, np.bool_), fix)
     rows = np.concatenate([fix_rows, none_rows])
     order = np.argsort(rows, kind="stable")
     valid = np.arange(rows.size) < fix_rows.size

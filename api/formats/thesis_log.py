@@ -51,7 +51,7 @@ def parse(content: bytes, limits: Limits, digest: str, course: Sense) -> ParsedL
     if delimiter == " ":
         content, delimiter = b"\n".join(b",".join(line.split()) for line in lines(content)), ","
     text = DelimitedText(content, COLUMNS, delimiter, header_lines=0)
-    columns = text.columns(COLUMNS)
+    columns = text.read(COLUMNS).columns
     checks.refuse_rows(columns[TIME].size, limits)
     table = ThesisTable(columns, text.cell)
     return ParsedLog(MEDIA_TYPE, digest, (), table.rows, partial(table.read, course))

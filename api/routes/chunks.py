@@ -1,14 +1,16 @@
 """Uploads."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
 
 from api import schemas
+from api.batches import Batches
 from api.dependencies import AnyDevice, Body, CurrentContext, ready
 from api.formats import MEDIA_TYPES
 from api.overload import Gate
-from api.services import ingest
+from api.services import ingest, intake
 from api.services.context import Context
 from storage import chunks
 
@@ -21,6 +23,7 @@ BODY: dict[str, Any] = {
     }
 }
 MAX_SEQ = 2**31 - 2
+Uploads = Batches[intake.Arrival, Response]
 Course = Literal["clockwise", "anticlockwise", "auto"]
 
 
@@ -50,10 +53,24 @@ async def upload_chunk(
     """
     sent = chunks.Body(body, content_type, content_encoding, course)
     gate: Gate = request.state.gate
-    return await gate.work(_answer, context, device_id, ingest.Chunk(session, seq, sent))
+    uploads: Uploads = request.state.uploads
+    with gate.upload():
+        return await uploads.do(intake.arrival(device_id, ingest.Chunk(session, seq, sent)))
 
 
-def _answer(context: Context, device_id: str, chunk: ingest.Chunk) -> Response:
-    answer = ingest.receive(context, device_id, chunk)
-    status = 202 if answer.chunk.state == chunks.WAITING else 200
-    return Response(answer.model_dump_json(), status, media_type="application/json")
+def open_uploads(context: Context) -> Uploads:
+    """Start the threads that work on uploads: on SQLite, where one can write, a single one for several at once."""
+    at_once = context.settings.upload_threads
+    threads, most = (1, at_once) if context.database.is_sqlite else (at_once, 1)
+    return Batches(lambda arrivals: _answers(context, arrivals), threads, most, "uploads")
+
+
+def _answers(context: Context, arrivals: Sequence[intake.Arrival]) -> list[Response | Exception]:
+    return [_answer(outcome) for outcome in intake.receive_together(context, arrivals)]
+
+
+def _answer(outcome: intake.Outcome) -> Response | Exception:
+    if isinstance(outcome, Exception):
+        return outcome
+    status = 202 if outcome.chunk.state == chunks.WAITING else 200
+    return Response(outcome.model_dump_json(), status, media_type="application/json")

@@ -16,7 +16,9 @@ from api.formats import ParsedLog
 from api.formats.log import Reading
 from api.services.context import Context
 from storage import installations, sessions
+from storage.database import ReadSession
 from storage.installations import Installation
+from storage.sessions import Session
 
 Correction = dict[str, Any] | None
 """Calibration of a device's accelerometer, as it is stored."""
@@ -40,29 +42,38 @@ class Foresight(NamedTuple):
         return reading is self.reading and correction == self.correction and before == self.before
 
 
-def foresee(context: Context, device_id: str, session: str, seq: int, parsed: ParsedLog) -> Foresight | None:
-    """Advance a device's estimator by the next chunk of a session; None when that is not worth it or cannot be done."""
-    if not context.database.is_sqlite:
-        return None  # PostgreSQL locks a single device
-    with context.database.read() as tx:
-        row = installations.find(tx, device_id)
-        if row is None:
-            return None
-        found = sessions.find(tx, row.device_pk, session)
-    if seq != (0 if found is None else found.next_seq):
+class Stand(NamedTuple):
+    """Where a device stands when it sends the next chunk of a session."""
+
+    row: Installation
+    session: Session | None
+    """None: it begins one"""
+
+
+def look_up(tx: ReadSession, device_id: str, session: str, seq: int) -> Stand | None:
+    """Find where a device stands; None when the chunk is not the next of its session, or the device is not known."""
+    row = installations.find(tx, device_id)
+    if row is None:
         return None
+    found = sessions.find(tx, row.device_pk, session)
+    return Stand(row, found) if seq == (0 if found is None else found.next_seq) else None
+
+
+def foresee(context: Context, stand: Stand, parsed: ParsedLog) -> Foresight | None:
+    """Advance a device's estimator by a chunk; None when that cannot be done."""
+    row, session = stand
+    correction = row.accelerometer_calibration
+    session_context = None if session is None else session.context
     try:
-        state, before = _stand(context.params, row, begins=found is None or row.session_pk != found.pk)
-        session_context = None if found is None else found.context
+        state, before = _state(context.params, row, begins=session is None or row.session_pk != session.pk)
         reading = parsed.samples(session_context)
-        after, outcome = advance(context.params, row.accelerometer_calibration, state, reading.samples)
+        after, outcome = advance(context.params, correction, state, reading.samples)
     except (core.SnapshotError, core.SampleError):
         return None  # the transaction says what is wrong
-    correction = row.accelerometer_calibration
     return Foresight(session_context, reading, before, correction, after, outcome, core.encode(after))
 
 
-def _stand(params: core.Parameters, row: Installation, begins: bool) -> tuple[core.State, bytes]:
+def _state(params: core.Parameters, row: Installation, begins: bool) -> tuple[core.State, bytes]:
     """Give the state that a chunk meets, with its snapshot."""
     state = core.initial_state(params) if row.snapshot is None else core.decode(row.snapshot)
     if begins:

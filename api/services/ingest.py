@@ -10,7 +10,7 @@ import logging
 from datetime import timedelta
 from typing import NamedTuple
 
-from api import metrics, schemas
+from api import schemas
 from api.formats import FormatError, Limits, ParsedLog, Reading, parse
 from api.services.calibration import Calibration, last_time
 from api.services.context import Context
@@ -21,9 +21,10 @@ from api.services.errors import (
     SessionEndedError,
     UnusableError,
 )
-from api.services.foresight import foresee
+from api.services.foresight import Foresight
 from storage import chunks, sessions
 from storage.chunks import APPLIED, WAITING, Body, Receipt, Waiting
+from storage.database import WriteSession
 from storage.sessions import Session
 
 log = logging.getLogger(__name__)
@@ -37,46 +38,32 @@ class Chunk(NamedTuple):
     body: Body
 
 
-def receive(context: Context, device_id: str, chunk: Chunk) -> schemas.Upload:
-    """Take in a chunk: when this returns it is durable, and applied exactly once if it was its turn.
+def apply(
+    tx: WriteSession, context: Context, device_id: str, chunk: Chunk, parsed: ParsedLog, foresight: Foresight | None
+) -> schemas.Upload:
+    """Take in a chunk that was read: applied exactly once if it was its turn, kept if it is ahead.
 
     Raises
     ------
-    FormatError, UnusableError
-        the chunk cannot be read or used.
+    UnusableError
+        the chunk cannot be used.
     ConflictError
         another chunk has its number, or it comes too late.
     NotFoundError
         no such device.
     """
-    with metrics.upload(chunk.body.content_type) as watch:
-        answer = _receive(context, device_id, chunk, watch)
-        watch.answered("duplicate" if answer.chunk.duplicate else answer.chunk.state, answer.chunk.rejected)
-    context.wake()
-    return answer
-
-
-def _receive(context: Context, device_id: str, chunk: Chunk, watch: metrics.Upload) -> schemas.Upload:
-    parsed = read(context, chunk.body)
-    watch.lap("parse")
-    foresight = foresee(context, device_id, chunk.session, chunk.seq, parsed)
-    watch.lap("foresee")
-    with context.database.write() as tx:
-        calibration = Calibration.open(tx, context, device_id)
-        watch.lap("wait")
-        calibration.foresight = foresight
-        session = sessions.find_or_add(tx, calibration.row.device_pk, chunk.session, calibration.now)
-        known = chunks.find(tx, session.pk, chunk.seq)
-        if known is None:
-            receipt = take(calibration, session, chunk, parsed)
-            calibration.save()
-        else:
-            receipt = same(known, parsed)
-        answer = schemas.Upload(
-            chunk=_present(chunk.session, receipt, known is not None, parsed), installation=calibration.shown()
-        )
-    watch.lap("store")
-    return answer
+    calibration = Calibration.open(tx, context, device_id)
+    calibration.foresight = foresight
+    session = sessions.find_or_add(tx, calibration.row.device_pk, chunk.session, calibration.now)
+    known = chunks.find(tx, session.pk, chunk.seq)
+    if known is None:
+        receipt = take(calibration, session, chunk, parsed)
+        calibration.save()
+    else:
+        receipt = same(known, parsed)
+    return schemas.Upload(
+        chunk=_present(chunk.session, receipt, known is not None, parsed), installation=calibration.shown()
+    )
 
 
 def read(context: Context, body: Body) -> ParsedLog:

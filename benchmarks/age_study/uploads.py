@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from api.services import ingest
+from api.services import ingest, intake
 from api.services.context import Context
 from benchmarks.accuracy_study.statistics import quantile
 from benchmarks.age_study.pair import Pair
@@ -40,7 +40,7 @@ def measure(compared: Pair, drives: Sequence[Drive], rounds: int) -> Uploads:
         contexts = {"old": compared.old, "fresh": compared.fresh}
         counted = position >= len(compared.senders) * len(drives[0].before)
         for age in generator.permutation(AGES).tolist():
-            taken = _time(ingest.receive, contexts[age], device_id, sent)
+            taken = _time(intake.receive, contexts[age], device_id, sent)
             if counted:
                 seconds[age].append(taken)
     return Uploads(_latency(seconds["old"]), _latency(seconds["fresh"]), len(seconds["old"]))

@@ -12,7 +12,7 @@ import sqlalchemy as sa
 from pydantic import SecretStr
 
 from api import schemas
-from api.services import access, fleet, ingest, startup
+from api.services import access, fleet, ingest, intake, startup
 from api.services.context import Context
 from api.settings import Settings
 from benchmarks.load_study.client import Body, Device
@@ -67,7 +67,7 @@ def prototypes(context: Context, drives: Sequence[Drive]) -> list[Prototype]:
 def _prototype(context: Context, name: str, drive: Drive) -> Prototype:
     fleet.register(context, schemas.DeviceDraft(id=name, name=name))
     for seq, minute in enumerate(drive.before):
-        ingest.receive(context, name, chunk(seq, encode(minute, ARROW)))
+        intake.receive(context, name, chunk(seq, encode(minute, ARROW)))
     with context.database.write() as tx:
         installation = installations.find(tx, name)
         assert installation is not None

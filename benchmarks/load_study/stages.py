@@ -8,7 +8,7 @@ from statistics import median
 from typing import TypeVar
 
 import core
-from api.services import access, ingest
+from api.services import access, ingest, intake
 from api.services.context import Context
 from benchmarks.load_study import drives, fleet
 from benchmarks.load_study.client import Body, Device
@@ -44,7 +44,7 @@ def _chunk(context: Context, device: Device, body: Body) -> dict[str, float]:
     state = _timed(times, "decode", lambda: core.decode(snapshot))
     state, _ = _timed(times, "advance", lambda: core.advance(context.params, state, samples))
     _timed(times, "encode", lambda: core.encode(state))
-    answer = _timed(times, "whole", lambda: ingest.receive(context, device.name, chunk))
+    answer = _timed(times, "whole", lambda: intake.receive(context, device.name, chunk))
     known = sum(times[stage] for stage in ("parse", "decode", "advance", "encode"))
     times["store and the rest"] = max(0.0, times.pop("whole") - known)
     _timed(times, "answer", answer.model_dump_json)

@@ -6,7 +6,7 @@ import pytest
 import sqlalchemy as sa
 
 from api import schemas
-from api.services import access, fleet, ingest, startup
+from api.services import access, fleet, ingest, intake, startup
 from api.services.context import Context
 from api.settings import Settings
 from storage import devices, webhooks
@@ -32,7 +32,7 @@ def send(context: Context, key: str, body: bytes, seq: int, session: str = "a") 
     device = access.authenticate(context, key).device_id
     assert device is not None
     sent = ingest.Chunk(session, seq, Body(body, "text/csv", None, "auto"))
-    return ingest.receive(context, device, sent).chunk.state
+    return intake.receive(context, device, sent).chunk.state
 
 
 def send_everything(context: Context, clock: Clock, key: str) -> None:

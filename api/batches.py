@@ -1,0 +1,89 @@
+"""Work that is done in batches: what comes in while one batch is worked on makes the next.
+
+Threads that work on a request each take the interpreter from one another all the time, and under load that costs more
+than it gains. A few threads that take what has gathered go through it undisturbed, and share what a batch needs once.
+"""
+
+import asyncio
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from queue import Empty, SimpleQueue
+from typing import Generic, NamedTuple, TypeVar
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+
+class _Waiting(NamedTuple, Generic[Item, Result]):
+    item: Item
+    done: "Future[Result]"
+
+
+class Batches(Generic[Item, Result]):
+    """Threads that work through a queue."""
+
+    def __init__(
+        self, work: Callable[[Sequence[Item]], Sequence[Result | Exception]], threads: int, most: int, name: str
+    ) -> None:
+        """Start the threads.
+
+        Parameters
+        ----------
+        work
+            gives for each item its result, or the exception that whoever waits for it shall see
+        threads
+            that work at the same time
+        most
+            items in a batch
+        name
+            of the threads
+        """
+        self._work = work
+        self._most = most
+        self._queue: SimpleQueue[_Waiting[Item, Result] | None] = SimpleQueue()
+        self._threads = [threading.Thread(target=self._run, name=f"{name}-{i}", daemon=True) for i in range(threads)]
+        for thread in self._threads:
+            thread.start()
+
+    async def do(self, item: Item) -> Result:
+        """Wait until an item is worked on and give its result; whoever gives up waiting does not stop the work."""
+        done: Future[Result] = Future()
+        self._queue.put(_Waiting(item, done))
+        return await asyncio.shield(asyncio.wrap_future(done))
+
+    def close(self) -> None:
+        """Finish what is queued, and end the threads."""
+        for _ in self._threads:
+            self._queue.put(None)
+        for thread in self._threads:
+            thread.join()
+
+    def _run(self) -> None:
+        while (first := self._queue.get()) is not None:
+            self._finish([first, *self._more()])
+
+    def _more(self) -> list[_Waiting[Item, Result]]:
+        """Take what else has gathered."""
+        taken: list[_Waiting[Item, Result]] = []
+        while len(taken) < self._most - 1:
+            try:
+                waiting = self._queue.get_nowait()
+            except Empty:
+                break
+            if waiting is None:
+                self._queue.put(None)  # the end, seen again when this batch is done
+                break
+            taken.append(waiting)
+        return taken
+
+    def _finish(self, batch: list[_Waiting[Item, Result]]) -> None:
+        try:
+            results = self._work([waiting.item for waiting in batch])
+        except Exception as error:
+            results = [error] * len(batch)
+        for waiting, result in zip(batch, results, strict=True):
+            if isinstance(result, Exception):
+                waiting.done.set_exception(result)
+            else:
+                waiting.done.set_result(result)
