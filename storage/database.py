@@ -4,6 +4,7 @@ The files beside this one make their statements once, when they are imported, wi
 call costs SQLAlchemy more time than the database needs to run it.
 """
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any, TypeVar
@@ -21,6 +22,10 @@ T = TypeVar("T")
 
 BUSY_TIMEOUT = 10.0
 """s a writer waits for another one before the request is answered with 503"""
+
+
+ASKED_AFTER = 1.0
+"""s a connection to a server has rested after which it is asked whether it still lives"""
 
 
 class ReadSession:
@@ -73,6 +78,8 @@ class Database:
             self.url = self.url.set(drivername="postgresql+psycopg")
         self.is_sqlite = self.url.get_backend_name() == "sqlite"
         self._reads, self._writes = _sqlite_engines(self.url) if self.is_sqlite else _postgresql_engines(self.url)
+        # SQLite's driver begins nothing by itself here, see `_sqlite_engines`
+        self._looks = self._reads if self.is_sqlite else self._reads.execution_options(isolation_level="AUTOCOMMIT")
         self._group = GroupCommit(self._writes, FileLock(self.url.database)) if self.is_sqlite else None
 
     @property
@@ -84,6 +91,12 @@ class Database:
     def read(self) -> Iterator[ReadSession]:
         """Open a read-only transaction: every query in it sees the same moment."""
         with self._reads.connect() as connection, connection.begin():
+            yield ReadSession(connection)
+
+    @contextmanager
+    def look(self) -> Iterator[ReadSession]:
+        """Look at the database without a transaction: each prepared statement sees the moment it runs at."""
+        with self._looks.connect() as connection:
             yield ReadSession(connection)
 
     @contextmanager
@@ -148,11 +161,28 @@ def _postgresql_engines(url: sa.URL) -> tuple[Engine, Engine]:
     engine = sa.create_engine(
         url,
         connect_args={"connect_timeout": 5, "options": waits, "application_name": "livella"},
-        pool_pre_ping=True,
         hide_parameters=True,  # errors are logged, and must not hold what was sent
         pool_size=10,
         max_overflow=40,
         pool_timeout=BUSY_TIMEOUT,
     )
+    _watch_over(engine)
     reads = engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
     return reads, engine
+
+
+def _watch_over(engine: Engine) -> None:
+    """Ask a connection whether it lives before it is used again, unless it was used just now: asking costs a way."""
+
+    @event.listens_for(engine, "checkin")
+    def _rests(_connection: Any, record: Any) -> None:
+        record.info["since"] = time.monotonic()
+
+    @event.listens_for(engine, "checkout")
+    def _ask(connection: Any, record: Any, _proxy: Any) -> None:
+        if time.monotonic() - record.info.get("since", time.monotonic()) < ASKED_AFTER:
+            return
+        try:
+            engine.dialect.do_ping(connection)
+        except engine.dialect.loaded_dbapi.Error as error:
+            raise sa.exc.DisconnectionError("the connection has ended") from error

@@ -1,10 +1,9 @@
-"""Statements of the path of an upload, translated once: on SQLite the driver gets them without a detour.
+"""Statements of the path of an upload, translated once: the driver gets them without a detour.
 
-SQLAlchemy looks up, checks and wraps for every execution, five times as long as SQLite takes for a row found by its
-key. A prepared statement keeps the text and the types' converters that SQLAlchemy made for it; errors are its own.
+SQLAlchemy looks up, checks and wraps for every execution, several times as long as a database takes for a row found by
+its key. A prepared statement keeps the text and the types' converters that SQLAlchemy made for it; errors are its own.
 """
 
-import sqlite3
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -14,23 +13,31 @@ from sqlalchemy.engine import Connection, Dialect
 on_error: list[Callable[[Exception], None]] = []
 """Told of every error, as SQLAlchemy's event `handle_error` tells of those of all other statements."""
 _Convert = Callable[[Any], Any] | None
+_FLOAT8 = 701
+"""PostgreSQL's number of the only type for whose values SQLAlchemy wants to know what the server calls it"""
+_Parameters = Sequence[Any] | dict[str, Any]
 
 
 class _Translated(NamedTuple):
     """A statement as the driver takes it."""
 
     sql: str
+    by_place: bool
+    """the driver takes parameters by place, not by name"""
     parameters: tuple[tuple[str, Any, _Convert], ...]
-    """name, value where none is given, converter"""
+    """name, value where none is given, converter; in the order of their places"""
     results: tuple[tuple[int, Callable[[Any], Any]], ...]
     """place and converter of the columns that have one"""
 
-    def bind(self, values: dict[str, Any]) -> list[Any]:
-        """Give the parameters in the order of their places."""
-        return [
+    def bind(self, values: dict[str, Any]) -> _Parameters:
+        """Give the parameters as the driver takes them."""
+        bound = [
             values.get(name, constant) if convert is None else convert(values.get(name, constant))
             for name, constant, convert in self.parameters
         ]
+        if self.by_place:
+            return bound
+        return {name: value for (name, _, _), value in zip(self.parameters, bound, strict=True)}
 
     def shape(self, row: Sequence[Any]) -> tuple[Any, ...]:
         """Give the values of a row as their columns' types have them."""
@@ -49,35 +56,53 @@ class Prepared:
 
     def rows(self, connection: Connection, values: dict[str, Any]) -> Sequence[Sequence[Any]]:
         """Run it in the connection's transaction and give the rows, if it gives any."""
-        if connection.dialect.name != "sqlite":
-            result = connection.execute(self.statement, values)
-            return result.all() if result.returns_rows else ()
-        form = self._translated.get(names := tuple(values))
+        form = self._translated.get(key := (connection.dialect.name, *values))
         if form is None:
-            form = self._translated[names] = _translate(self.statement, connection.dialect, names)
+            form = self._translated[key] = _translate(self.statement, connection.dialect, tuple(values))
         return [form.shape(row) for row in execute(connection, form.sql, form.bind(values))]
 
 
-def execute(connection: Connection, sql: str, parameters: Sequence[Any] = ()) -> list[Any]:
-    """Give SQLite's driver a statement of the connection's transaction, and the rows that it gives."""
+def execute(connection: Connection, sql: str, parameters: _Parameters = ()) -> list[Any]:
+    """Give the driver a statement of the connection's transaction, and the rows that it gives."""
     driver: Any = connection.connection.dbapi_connection
     try:
-        found: list[Any] = driver.execute(sql, parameters).fetchall()
-    except sqlite3.Error as error:
-        wrapped = sa.exc.DBAPIError.instance(sql, tuple(parameters), error, sqlite3.Error, dialect=connection.dialect)
+        cursor = driver.execute(sql, parameters)
+        found: list[Any] = [] if cursor.description is None else cursor.fetchall()
+    except connection.dialect.loaded_dbapi.Error as error:
+        raise _wrapped(connection, sql, error) from error
+    return found
+
+
+def _wrapped(connection: Connection, sql: str, error: Exception) -> BaseException:
+    """Give SQLAlchemy's error for one of the driver; a connection that has broken is not used again."""
+    dialect = connection.dialect
+    is_lost = dialect.is_disconnect(error, connection.connection.dbapi_connection, None)  # type: ignore[arg-type]
+    wrapped = sa.exc.DBAPIError.instance(
+        sql,
+        None,  # what was sent may be secret, and errors are logged
+        error,
+        dialect.loaded_dbapi.Error,
+        hide_parameters=True,
+        connection_invalidated=is_lost,
+        dialect=dialect,
+    )
+    if isinstance(wrapped, Exception):
         for told in on_error:
             told(wrapped)
-        raise wrapped from error
-    return found
+    if is_lost:
+        connection.invalidate(error)
+    return wrapped
 
 
 def _translate(statement: Any, dialect: Dialect, names: Sequence[str]) -> _Translated:
     compiled = statement.compile(dialect=dialect, column_keys=None if statement.is_select else list(names))
+    by_place = compiled.positiontup is not None
+    named = {name: parameter for parameter, name in compiled.bind_names.items()}
     places = [
-        (name, compiled.params[name], compiled.binds[name].type.dialect_impl(dialect).bind_processor(dialect))
-        for name in compiled.positiontup or ()
+        (name, compiled.params[name], named[name].type.dialect_impl(dialect).bind_processor(dialect))
+        for name in (compiled.positiontup if by_place else named)
     ]
     columns = statement.selected_columns if statement.is_select else ()
-    results = [column.type.dialect_impl(dialect).result_processor(dialect, None) for column in columns]
+    results = [column.type.dialect_impl(dialect).result_processor(dialect, _FLOAT8) for column in columns]
     converted = tuple((place, convert) for place, convert in enumerate(results) if convert is not None)
-    return _Translated(str(compiled), tuple(places), converted)
+    return _Translated(str(compiled), by_place, tuple(places), converted)

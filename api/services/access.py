@@ -71,7 +71,7 @@ def digest(key: str) -> bytes:
 def authenticate(context: Context, key: str) -> Principal:
     """Tell whose key this is, or raise `UnauthenticatedError`."""
     wanted = digest(key)
-    with context.database.read() as tx:
+    with context.database.look() as tx:
         found = keys.by_digest(tx, wanted)
     if found is None or not hmac.compare_digest(found.digest, wanted):
         raise UnauthenticatedError(UNKNOWN)

@@ -67,7 +67,7 @@ def receive_together(context: Context, arrivals: Sequence[Arrival]) -> list[Outc
 def _foresee(context: Context, uploads: "Sequence[_Upload]") -> None:
     if not uploads:
         return
-    with context.database.read() as tx:
+    with context.database.look() as tx:
         for upload in uploads:
             upload.look_up(tx)
     for upload in uploads:

@@ -47,7 +47,7 @@ def crash_at(statement: int) -> Iterator[list[str]]:
         if not connection.get_execution_options().get("postgresql_readonly") and not is_reader(connection):
             count("COMMIT")
 
-    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] = ()) -> list[Any]:
+    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] | dict[str, Any] = ()) -> list[Any]:
         before_execute(connection, None, sql)
         return straight(connection, sql, parameters)
 
