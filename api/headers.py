@@ -16,6 +16,7 @@ HEADERS = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=(), payment=()",
 }
 API_CACHING = "no-store"
+_RAW = [(name.lower().encode(), value.encode()) for name, value in HEADERS.items()]
 
 
 class SecurityHeaders:
@@ -32,10 +33,9 @@ class SecurityHeaders:
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                headers = MutableHeaders(scope=message)
-                headers.update(HEADERS)
+                message["headers"] = [*message.get("headers", ()), *_RAW]
                 if scope["path"].startswith("/api/"):
-                    headers.setdefault("Cache-Control", API_CACHING)
+                    MutableHeaders(scope=message).setdefault("Cache-Control", API_CACHING)
             await send(message)
 
         await self.app(scope, receive, send_with_headers)

@@ -151,7 +151,8 @@ def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:
 
         return made
 
-    reads = engine("BEGIN", ("query_only = ON",), pool_size=8, max_overflow=32)
+    # more than there are threads that read: a look at a key, in the event loop, must not wait for one of them to end
+    reads = engine("BEGIN", ("query_only = ON",), pool_size=8, max_overflow=56)
     writes = engine("BEGIN IMMEDIATE", ("synchronous = FULL",), pool_size=1, max_overflow=1)
     return reads, writes
 

@@ -9,7 +9,9 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import alert_unresolved, alerts, devices, installations, sessions
+from storage.models import alert_unresolved, alerts, devices, installations, mount_current, mounts, sessions
+from storage.mounts import COLUMNS as MOUNT_COLUMNS
+from storage.mounts import Mount
 from storage.prepared import Prepared
 
 
@@ -40,6 +42,8 @@ class Beside(NamedTuple):
     since_started_at: datetime | None
     """zero of the clock of the session in which the stage began"""
     open_alerts: int
+    mount: Mount | None
+    """the one in force, or the suspect one"""
 
 
 _own = Installation._fields[:-1]
@@ -51,9 +55,19 @@ _find = Prepared(_of_id)
 _lock = Prepared(_of_id.with_for_update(key_share=True, of=(installations, devices)))
 _get = _select.where(installations.c.device_pk == sa.bindparam("device_pk"))
 _device_id = sa.select(devices.c.id).where(devices.c.pk == sa.bindparam("of_device_pk")).scalar_subquery()
-_show = sa.select(
-    sa.select(sessions.c.started_at).where(sessions.c.pk == sa.bindparam("since_session_pk")).scalar_subquery(),
-    sa.select(sa.func.count()).where(alerts.c.device_id == _device_id, alert_unresolved).scalar_subquery(),
+_since = sessions.alias()
+_show = (
+    sa.select(
+        sa.select(_since.c.started_at).where(_since.c.pk == sa.bindparam("since_session_pk")).scalar_subquery(),
+        sa.select(sa.func.count()).where(alerts.c.device_id == devices.c.id, alert_unresolved).scalar_subquery(),
+        *MOUNT_COLUMNS,
+    )
+    .select_from(  # one by one: SQLite would put all mountings of all devices together for a join in brackets
+        devices.outerjoin(mounts, (mounts.c.device_pk == devices.c.pk) & mount_current).outerjoin(
+            sessions, sessions.c.pk == mounts.c.session_pk
+        )
+    )
+    .where(devices.c.pk == sa.bindparam("of_device_pk"))
 )
 _beside = Prepared(_show)
 _add = sa.insert(installations).values(device_id=_device_id)
@@ -97,7 +111,11 @@ def get(tx: ReadSession, device_pk: int) -> Installation | None:
 def beside(tx: ReadSession, row: Installation) -> Beside:
     """Give what is shown with an installation."""
     values = {"since_session_pk": row.since_session_pk, "of_device_pk": row.device_pk}
-    return tx.all(Beside, _beside, **values)[0]
+    return tx.one(_shown_beside, _beside, **values) or Beside(None, 0, None)
+
+
+def _shown_beside(since_started_at: datetime | None, open_alerts: int, *mount: Any) -> Beside:
+    return Beside(since_started_at, open_alerts, None if mount[0] is None else Mount(*mount))
 
 
 def add(tx: WriteSession, installation: Installation) -> None:

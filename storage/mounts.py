@@ -7,7 +7,6 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
 from storage.models import mount_current, mounts, sessions
-from storage.prepared import Prepared
 
 IN_FORCE, SUSPECT, SUPERSEDED = "in_force", "suspect", "superseded"
 
@@ -24,19 +23,11 @@ class Mount(NamedTuple):
     status: str
 
 
-_select = sa.select(
-    mounts.c.n,
-    mounts.c.t,
-    sessions.c.started_at,
-    mounts.c.quaternion,
-    mounts.c.sigma_deg,
-    mounts.c.verification,
-    mounts.c.status,
-).join_from(mounts, sessions)
-
-
+COLUMNS = [sessions.c.started_at if name == "started_at" else mounts.c[name] for name in Mount._fields]
+"""of a mounting with its session"""
+_select = sa.select(*COLUMNS).join_from(mounts, sessions)
 _current = (mounts.c.device_pk == sa.bindparam("of_device_pk")) & mount_current
-_find_current = Prepared(_select.where(_current))
+_find_current = _select.where(_current)
 _of_device = _select.where(mounts.c.device_pk == sa.bindparam("device_pk"))
 _find = _of_device.where(mounts.c.n == sa.bindparam("n"))
 _page = _of_device.order_by(mounts.c.n.desc()).limit(sa.bindparam("limit"))

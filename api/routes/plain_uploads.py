@@ -91,7 +91,10 @@ class PlainUploads(BaseRoute):
         context: Context = request.state.context
         await ready(request)
         bearer = HTTPAuthorizationCredentials(scheme="Bearer", credentials=found.key)
-        principal = await to_thread.run_sync(get_principal, request, context, bearer, None)
+        if context.database.is_sqlite:  # the way to a thread and back is longer than this look into a file
+            principal = get_principal(request, context, bearer, None)
+        else:
+            principal = await to_thread.run_sync(get_principal, request, context, bearer, None)
         device_id = await own_device(found.device_id, principal)
         body = await read_body(request, context, device_id)
         response = await upload_chunk(request, device_id, body, context, *found[2:])

@@ -89,7 +89,6 @@ def installation(
     row: installations.Installation,
     device_id: str,
     beside: installations.Beside,
-    mount_row: mounts.Mount | None,
     params: core.Parameters,
 ) -> schemas.Installation:
     """Give the installation resource."""
@@ -107,7 +106,7 @@ def installation(
             "hint": hint(row.stage, shown["needs"]),
             "estimate": None if now is None else now | rotation(now["quaternion"]),
             "verification": shown["verification"],
-            "mount": None if mount_row is None else mount(mount_row),
+            "mount": None if beside.mount is None else mount(beside.mount),
             "limits": limits(params),
             "open_alerts": beside.open_alerts,
             "last_data_at": row.last_data_at,

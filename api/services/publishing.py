@@ -6,7 +6,7 @@ from typing import Literal
 import core
 from api import schemas
 from api.services import presenting, webhooks_queue
-from storage import alerts, devices, events, installations, mounts
+from storage import alerts, devices, events, installations
 from storage.database import ReadSession, WriteSession
 
 
@@ -14,8 +14,7 @@ def show(
     tx: ReadSession, row: installations.Installation, device_id: str, params: core.Parameters
 ) -> schemas.Installation:
     """Give the installation resource of a row."""
-    beside, mount = installations.beside(tx, row), mounts.current(tx, row.device_pk)
-    return presenting.installation(row, device_id, beside, mount, params)
+    return presenting.installation(row, device_id, installations.beside(tx, row), params)
 
 
 def installation_changed(tx: WriteSession, shown: schemas.Installation, now: datetime) -> None:
