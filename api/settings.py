@@ -42,7 +42,12 @@ class Settings(BaseSettings):
         le=100_000,
         description="Chunks a server process has in work or waiting at once; more are answered with 503.",
     )
-    upload_threads: int = Field(8, ge=1, le=64, description="Chunks a server process works on at the same time.")
+    upload_threads: int = Field(
+        3,
+        ge=1,
+        le=64,
+        description="Chunks a server process works on at the same time; on SQLite it takes batches of 8.",
+    )
     max_inflight_bytes: int = Field(
         256 * MIB,
         ge=1024,

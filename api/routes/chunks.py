@@ -23,6 +23,8 @@ BODY: dict[str, Any] = {
     }
 }
 MAX_SEQ = 2**31 - 2
+AT_ONCE = 8
+"""chunks in a batch: the first of them waits for the last, some 10 ms for each"""
 Uploads = Batches[intake.Arrival, Response]
 Course = Literal["clockwise", "anticlockwise", "auto"]
 
@@ -60,8 +62,7 @@ async def upload_chunk(
 
 def open_uploads(context: Context) -> Uploads:
     """Start the threads that work on uploads: on SQLite, where one can write, a single one for several at once."""
-    at_once = context.settings.upload_threads
-    threads, most = (1, at_once) if context.database.is_sqlite else (at_once, 1)
+    threads, most = (1, AT_ONCE) if context.database.is_sqlite else (context.settings.upload_threads, 1)
     return Batches(lambda arrivals: _answers(context, arrivals), threads, most, "uploads")
 
 

@@ -196,3 +196,36 @@ def test_nobody_is_left_waiting_when_the_one_behind_gives_up(
         thread.join(10)
         assert not thread.is_alive()
     assert "x1" in facts(database)
+
+
+def test_members_of_one_turn_are_committed_at_once_and_fail_alone(database: Database) -> None:
+    with commits(database) as seen, database.together() as transaction:
+        for n in range(4):
+            with suppress(ValueError), transaction() as tx:
+                meta.put(tx, f"x{n}", "1")
+                if n == 2:
+                    raise ValueError(n)
+        assert facts(database) == {}
+    assert set(facts(database)) == {"x0", "x1", "x3"}
+    assert len(seen) == 1
+
+
+def test_after_the_whole_turn_has_failed_no_member_goes_on(database: Database) -> None:
+    def spoil(transaction: Callable[[], Any]) -> None:
+        with suppress(sa.exc.DBAPIError), transaction() as tx:
+            meta.put(tx, "x0", "1")
+            tx.connection.exec_driver_sql("ROLLBACK")  # as SQLite does by itself on a full disk
+            raise sa.exc.OperationalError("INSERT", None, Exception("disk is full"))
+
+    def take_turn() -> None:
+        with database.together() as transaction:
+            spoil(transaction)
+            with suppress(sa.exc.DBAPIError), transaction() as tx:
+                meta.put(tx, "x1", "1")
+
+    with pytest.raises(sa.exc.DBAPIError):
+        take_turn()
+    assert facts(database) == {}
+    with database.write() as tx:
+        meta.put(tx, "x2", "1")
+    assert set(facts(database)) == {"x2"}

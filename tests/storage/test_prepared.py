@@ -63,3 +63,35 @@ def test_errors_are_sqlalchemys_and_undo_the_transaction(database: Database) -> 
     with pytest.raises(sa.exc.IntegrityError):
         add_both()
     assert rows(database, "b") == []
+
+
+@pytest.mark.parametrize("backend", ["postgresql"], indirect=True)
+def test_a_connection_that_has_ended_is_not_used_again(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
+    end_all = sa.text(
+        "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity "
+        "WHERE datname = current_database() AND pid <> pg_backend_pid()"
+    )
+    rows(database, "a")
+    other = Database(database.url.render_as_string(hide_password=False))
+    with other.write() as tx:
+        tx.connection.execute(end_all)
+    with pytest.raises(sa.exc.DBAPIError) as caught:
+        rows(database, "a")
+    assert caught.value.connection_invalidated
+    assert rows(database, "a") == []
+    monkeypatch.setattr("storage.database.ASKED_AFTER", 0.0)
+    with other.write() as tx:
+        tx.connection.execute(end_all)
+    assert rows(database, "a") == []  # one that has rested is asked first
+    other.close()
+
+
+@pytest.mark.parametrize("values", [{"id": "secret-value" * 30, "name": None, "created_at": NOW}])
+def test_errors_do_not_tell_what_was_sent(database: Database, values: dict[str, Any]) -> None:
+    def add() -> None:
+        with database.write() as tx:
+            tx.run(ADD, **values)
+
+    with pytest.raises(sa.exc.DBAPIError) as caught:
+        add()
+    assert "parameters" not in str(caught.value)

@@ -1,0 +1,145 @@
+"""Several chunks taken in at once are to each other as if each had come alone."""
+
+from collections.abc import Callable, Iterator
+from contextvars import ContextVar
+
+import pytest
+import sqlalchemy as sa
+from sqlalchemy import event
+
+from api import schemas
+from api.formats import FormatError, ParsedLog
+from api.services import access, fleet, ingest, intake, startup
+from api.services.context import Context
+from api.services.errors import ConflictError, NotFoundError
+from api.settings import Settings
+from storage.chunks import Body
+from storage.models import chunks as chunk_table
+from tests.conftest import Clock
+from tests.drives import remounted
+
+WHERE: ContextVar[str] = ContextVar("where", default="nowhere")
+
+
+@pytest.fixture
+def context(settings: Settings, clock: Clock) -> Iterator[Context]:
+    made = Context.make(settings, clock)
+    startup.prepare(made)
+    for name in ("a", "b", "c"):
+        fleet.register(made, schemas.DeviceDraft(id=name, name=name))
+    yield made
+    made.database.close()
+
+
+def arrival(device_id: str, seq: int, body: bytes | None = None) -> intake.Arrival:
+    content = remounted().chunks[seq] if body is None else body
+    return intake.arrival(device_id, ingest.Chunk("s", seq, Body(content, "text/csv", None, "auto")))
+
+
+def told(outcome: intake.Outcome) -> str:
+    return type(outcome).__name__ if isinstance(outcome, Exception) else outcome.chunk.state
+
+
+def receipts(context: Context) -> int:
+    with context.database.read() as tx:
+        return int(tx.value(sa.select(sa.func.count()).select_from(chunk_table)))
+
+
+def shown(context: Context, device_id: str) -> schemas.Installation:
+    _, found = fleet.read_installation(context, device_id)
+    assert found is not None
+    return found
+
+
+def count_commits(context: Context, before: Callable[[], None] = lambda: None) -> list[int]:
+    seen: list[int] = []
+
+    def count(_: sa.Connection) -> None:
+        before()
+        seen.append(1)
+
+    event.listen(context.database.engine, "commit", count)
+    return seen
+
+
+def test_each_gets_its_own_answer(context: Context) -> None:
+    batch = [
+        arrival("a", 0),
+        arrival("nobody", 0),
+        arrival("b", 0, b"t,ax\n1,x\n"),
+        arrival("c", 1),
+        arrival("a", 1),
+        arrival("a", 0),
+        arrival("a", 1, remounted().chunks[3]),
+    ]
+    outcomes = intake.receive_together(context, batch)
+    assert [told(outcome) for outcome in outcomes] == [
+        "applied", NotFoundError.__name__, FormatError.__name__, "waiting", "applied", "applied", "ChunkConflictError",
+    ]  # fmt: skip
+    duplicate = outcomes[5]
+    assert isinstance(duplicate, schemas.Upload)
+    assert duplicate.chunk.duplicate
+    assert isinstance(outcomes[6], ConflictError)
+    assert receipts(context) == 3
+
+
+def test_together_ends_where_one_after_the_other_ends(context: Context) -> None:
+    intake.receive_together(context, [arrival(name, seq) for seq in range(6) for name in ("a", "b")])
+    for seq in range(6):
+        intake.receive(context, "c", arrival("c", seq).chunk)
+    one = shown(context, "c").model_dump(exclude={"device_id", "since"})
+    assert shown(context, "a").model_dump(exclude={"device_id", "since"}) == one
+    assert shown(context, "b").model_dump(exclude={"device_id", "since"}) == one
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_on_sqlite_they_share_one_commit(context: Context) -> None:
+    seen = count_commits(context)
+    intake.receive_together(context, [arrival(name, 0) for name in ("a", "b", "c", "nobody")])
+    assert len(seen) == 1
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_when_the_commit_fails_none_is_acknowledged_and_all_can_come_again(context: Context) -> None:
+    failing = [True]
+
+    def fail() -> None:
+        if failing:
+            failing.pop()
+            raise sa.exc.OperationalError("COMMIT", None, Exception("database or disk is full"))
+
+    count_commits(context, fail)
+    batch = [arrival("a", 0), arrival("b", 0), arrival("nobody", 0)]
+    outcomes = intake.receive_together(context, batch)
+    assert [told(outcome) for outcome in outcomes] == ["OperationalError", "OperationalError", "NotFoundError"]
+    assert receipts(context) == 0
+    assert [told(outcome) for outcome in intake.receive_together(context, batch)][:2] == ["applied", "applied"]
+
+
+def test_each_is_worked_on_within_its_request(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[str] = []
+    straight = ingest.read
+
+    def read(context: Context, body: Body) -> ParsedLog:
+        seen.append(WHERE.get())
+        return straight(context, body)
+
+    monkeypatch.setattr(ingest, "read", read)
+    batch = []
+    for name in ("a", "b"):
+        token = WHERE.set(f"request of {name}")
+        batch.append(arrival(name, 0))
+        WHERE.reset(token)
+    intake.receive_together(context, batch)
+    assert seen == ["request of a", "request of b"]
+
+
+def test_keys_are_looked_up_without_a_transaction(context: Context) -> None:
+    key = fleet.register(context, schemas.DeviceDraft(id="d", name="d")).key
+    ran: list[sa.Connection] = []
+    event.listen(sa.Engine, "begin", ran.append)
+    try:
+        assert access.authenticate(context, key).device_id == "d"
+    finally:
+        event.remove(sa.Engine, "begin", ran.append)
+    assert ran == []
