@@ -137,9 +137,13 @@ def test_each_is_worked_on_within_its_request(context: Context, monkeypatch: pyt
 def test_keys_are_looked_up_without_a_transaction(context: Context) -> None:
     key = fleet.register(context, schemas.DeviceDraft(id="d", name="d")).key
     ran: list[sa.Connection] = []
-    event.listen(sa.Engine, "begin", ran.append)
+
+    def note(connection: sa.Connection) -> None:
+        ran.append(connection)
+
+    event.listen(sa.Engine, "begin", note)
     try:
         assert access.authenticate(context, key).device_id == "d"
     finally:
-        event.remove(sa.Engine, "begin", ran.append)
+        event.remove(sa.Engine, "begin", note)
     assert ran == []
