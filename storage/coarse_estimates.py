@@ -44,7 +44,9 @@ _in_period = (
 _seconds = sa.select(sa.func.coalesce(sa.func.sum(coarse.c.t_last - coarse.c.t_first), 0.0)).where(*_in_period)
 _sketches, _blocks = (
     sa.select(sessions.c.name, sessions.c.started_at, column)
-    .join_from(coarse, sessions, sessions.c.pk == coarse.c.session_pk)
+    .join_from(  # the second part says nothing new, but PostgreSQL then looks among the sessions of a device only
+        coarse, sessions, (sessions.c.pk == coarse.c.session_pk) & (sessions.c.device_pk == coarse.c.device_pk)
+    )
     .where(*_in_period)
     .order_by(coarse.c.day, coarse.c.session_pk)
     for column in (coarse.c.sketch, coarse.c.rows)

@@ -55,7 +55,8 @@ def _utc(column: sa.ColumnElement[float]) -> sa.ColumnElement[Any]:
 
 _received_at = estimates.c.received_at
 _before = sa.bindparam("before", type_=Instant)
-_of_session = sessions.c.pk == estimates.c.session_pk
+_of_session = (sessions.c.pk == estimates.c.session_pk) & (sessions.c.device_pk == estimates.c.device_pk)
+"""The second part says nothing new, but PostgreSQL then looks among the sessions of a device, not among all."""
 _start, _end = (sa.bindparam(name, type_=sa.BigInteger) for name in ("start", "end"))
 _in_period = (
     estimates.c.device_pk == sa.bindparam("device_pk"),

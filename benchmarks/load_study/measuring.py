@@ -3,10 +3,12 @@
 import os
 import resource
 import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
+from statistics import median
 
 import uvloop
 
@@ -51,8 +53,20 @@ def encoded(encoding: str) -> list[list[Body]]:
     return drives.encode_all(driven(), encoding)
 
 
+def loop(additions: int = 200_000, times: int = 15) -> float:
+    """Give the s that a million additions in Python take, in the median: what others do to the machine shows in it."""
+    taken = []
+    for _ in range(times):
+        begun, total = time.perf_counter(), 0
+        for number in range(additions):
+            total += number
+        taken.append(time.perf_counter() - begun)
+    return 1e6 / additions * median(taken)
+
+
 def measure(cell: Cell, plan: Plan) -> Result:
     """Run a cell with so many devices on a fresh database."""
+    before = loop()
     connections_possible()  # before the service is started, which inherits the limit
     with tempfile.TemporaryDirectory(prefix="livella-load-") as name, database(cell.database, Path(name)) as (url, pid):
         directory = Path(name)
@@ -61,7 +75,7 @@ def measure(cell: Cell, plan: Plan) -> Result:
         result = play(cell, plan, directory, disk)
     if cell.fsync and not result.fsyncs > 0.0:
         raise NotSlowedError("the fsyncs of this Python's SQLite cannot be made slower")
-    return result
+    return result._replace(loop=(before, loop()))
 
 
 def _measure(url: str, database_pid: int | None, cell: Cell, plan: Plan, directory: Path, disk: Disk) -> Result:

@@ -36,10 +36,12 @@ COLUMNS = [
     "fsyncs a chunk",
     "RSS of a worker, MiB",
     "cores busy",
+    "loop, ms",
 ]
 ERRORS = """"Errors" are answers other than 200, chunks without an answer, and devices of which something acknowledged
 is not stored exactly once. CPU is that of all the service's processes and of the database, from the end of the warm-up
-to the end of the run, for each chunk that was taken in: where many are refused (503), refusing is in it."""
+to the end of the run, for each chunk that was taken in: where many are refused (503), refusing is in it. "Loop" is what a million additions in Python took on the same machine
+just before and after: with what others do on it its speed changes, and every figure with it."""
 STAGE_TEXT = """### Where the CPU of a chunk goes
 
 Median ms of the functions of an upload, called one after the other in one process on SQLite. The last line is what the
@@ -50,14 +52,25 @@ NAIVE_TEXT = """### Beside a naive stack
 `benchmarks/naive.py` is the same upload as one would write it first: FastAPI, pyarrow, `scipy.signal.decimate`, a numpy
 filter, an ORM session per request, the state as JSON; what it leaves out is in its favour. Same generator, same
 machine, same run, as many processes, {what}, p99 within {limit:.0f} ms."""
+MEMORY, MIB = 600, 1.048576
+"""MB"""
 HTTP, WHOLE = "HTTP and the rest", "whole, under load"
 
 Stages = Mapping[str, Mapping[str, float]]
 
 
 def targets(study: Study) -> list[Target]:
-    """Judge the cells."""
-    return [_target(name, cell, study) for name, cell in CELLS.items() if not cell.naive]
+    """Judge the cells, and the memory of a worker in the largest run of the one that has most to keep."""
+    return [*(_target(name, cell, study) for name, cell in CELLS.items() if not cell.naive), *_memory(study)]
+
+
+def _memory(study: Study) -> list[Target]:
+    runs = [run for run in study.runs.get(BESIDE, []) if run.devices >= CELLS[BESIDE].devices]
+    if not runs:
+        return []
+    most = max(max(run.rss) for run in runs) * MIB
+    what = f"memory of a worker with {CELLS[BESIDE].devices} devices"
+    return [Target(what, f"≤ {MEMORY} MB", f"{most:.0f} MB", most <= MEMORY)]
 
 
 def _target(name: str, cell: Cell, study: Study) -> Target:
@@ -92,6 +105,7 @@ def row(name: str, result: Result) -> list[str]:
         number(result.fsyncs),
         " ".join(f"{mib:.0f}" for mib in result.rss),
         number(result.cores),
+        " ".join(number(1e3 * seconds) for seconds in result.loop),
     ]
 
 

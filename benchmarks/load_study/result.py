@@ -35,6 +35,8 @@ class Result(NamedTuple):
     connections: int
     cores: float
     """that service, database and generator kept busy"""
+    loop: tuple[float, float] = (float("nan"), float("nan"))
+    """s that `measuring.loop` took before and after: how quick the machine was"""
 
     def held(self, limit: float) -> bool:
         """Tell whether the service held so many devices."""

@@ -12,9 +12,9 @@ from benchmarks import naive
 from benchmarks.load_study.cells import CELLS, NAIVE, Cell, why_not
 from benchmarks.load_study.client import Device
 from benchmarks.load_study.drives import ARROW, CHUNK, CSV
-from benchmarks.load_study.measuring import NotSlowedError, measure
+from benchmarks.load_study.measuring import NotSlowedError, loop, measure
 from benchmarks.load_study.pacing import Answer, Latency, Plan, due_times, errors, measured, next_count, quantiles
-from benchmarks.load_study.page import HTTP, WHOLE, assemble, ratios, with_http
+from benchmarks.load_study.page import HTTP, WHOLE, assemble, ratios, targets, with_http
 from benchmarks.load_study.processes import TICK, parse
 from benchmarks.load_study.result import Meter, Result, Traffic, conclude, largest_held
 from benchmarks.load_study.study import Study, carry_out
@@ -217,3 +217,16 @@ def test_every_chunk_a_small_fleet_sends_is_stored_once(name: str) -> None:
     assert seen.server_cpu > 0
     assert len(seen.rss) == 2
     assert seen.latency.p50 > CELLS[name].fsync
+
+
+def test_memory_is_judged_with_as_many_devices_as_are_wanted() -> None:
+    few = result(5_000, 0.1)._replace(rss=[900.0, 100.0])
+    enough = result(10_000, 9.9)._replace(rss=[550.0, 500.0])
+    assert [target.wanted for target in targets(Study({"sqlite-csv": [few]}, {}))].count("≤ 600 MB") == 0
+    judged = targets(Study({"sqlite-csv": [few, enough]}, {}))[-1]
+    assert (judged.measured, judged.met) == ("577 MB", True)
+    assert not targets(Study({"sqlite-csv": [enough, enough._replace(rss=[600.0, 1.0])]}, {}))[-1].met
+
+
+def test_the_speed_of_the_machine_is_measured() -> None:
+    assert 0.0 < loop(1000, 3) < 10.0
