@@ -40,8 +40,9 @@ COLUMNS = [
 ]
 ERRORS = """"Errors" are answers other than 200, chunks without an answer, and devices of which something acknowledged
 is not stored exactly once. CPU is that of all the service's processes and of the database, from the end of the warm-up
-to the end of the run, for each chunk that was taken in: where many are refused (503), refusing is in it. "Loop" is what a million additions in Python took on the same machine
-just before and after: with what others do on it its speed changes, and every figure with it."""
+to the end of the run, for each chunk that was taken in: where many are refused (503), refusing is in it. "Loop" is
+what a million additions in Python took on the same machine just before and after: its speed changes with what others do
+on it, and every figure with it."""
 STAGE_TEXT = """### Where the CPU of a chunk goes
 
 Median ms of the functions of an upload, called one after the other in one process on SQLite. The last line is what the
