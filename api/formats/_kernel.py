@@ -33,15 +33,6 @@ MAX_EXPONENT_DIGITS, TOO_LARGE = 9, 1_000_000_000
 
 
 @njit(cache=True, nogil=True)
-def count(text, start, character):
-    """Count a character from `start` on; `text` as for `read`."""
-    found = 0
-    for at in range(start, text.size):
-        found += text[at] == character
-    return found
-
-
-@njit(cache=True, nogil=True)
 def read(text, start, delimiter, target, values, hard):
     """Read the rows from `start` on.
 

@@ -135,7 +135,7 @@ class DelimitedText:
 
     def _most_rows(self, text: NDArray[np.uint8], start: int) -> int:
         """Tell how many rows there can be, which is how many there are when no line is blank."""
-        line_ends = _kernel.count(text, start, ord("\n")) or _kernel.count(text, start, ord("\r"))
+        line_ends = next((n for end in b"\n\r" if (n := np.count_nonzero(text[start:] == end))), 0)
         after_last = 0 if self.content.endswith((b"\n", b"\r")) else 1
         bytes_per_row = len(self.names)  # at least: a delimiter or an end of line after each cell
         return min(int(line_ends) + after_last, (text.size - start) // bytes_per_row + 1)
