@@ -4,6 +4,7 @@ The files beside this one make their statements once, when they are imported, wi
 call costs SQLAlchemy more time than the database needs to run it.
 """
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -173,15 +174,25 @@ def _postgresql_engines(url: sa.URL) -> tuple[Engine, Engine]:
 
 
 def _watch_over(engine: Engine) -> None:
-    """Ask a connection whether it lives before it is used again, unless it was used just now: asking costs a way."""
+    """Ask a connection whether it lives before it is used again, unless it was used just now: asking costs a way.
+
+    When one was found to have ended, so may have all that were put back before.
+    """
+    lost_at = -math.inf
 
     @event.listens_for(engine, "checkin")
     def _rests(_connection: Any, record: Any) -> None:
         record.info["since"] = time.monotonic()
 
+    @event.listens_for(engine, "invalidate")
+    def _lost(_connection: Any, _record: Any, _error: Any) -> None:
+        nonlocal lost_at
+        lost_at = time.monotonic()
+
     @event.listens_for(engine, "checkout")
     def _ask(connection: Any, record: Any, _proxy: Any) -> None:
-        if time.monotonic() - record.info.get("since", time.monotonic()) < ASKED_AFTER:
+        since = record.info.get("since", math.inf)
+        if since > max(lost_at, time.monotonic() - ASKED_AFTER):
             return
         try:
             engine.dialect.do_ping(connection)

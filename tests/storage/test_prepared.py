@@ -71,12 +71,18 @@ def test_a_connection_that_has_ended_is_not_used_again(database: Database, monke
         "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity "
         "WHERE datname = current_database() AND pid <> pg_backend_pid()"
     )
-    rows(database, "a")
+    with database.write(), database.write(), database.write():
+        pass  # now three connections rest
     other = Database(database.url.render_as_string(hide_password=False))
     with other.write() as tx:
         tx.connection.execute(end_all)
+
+    def look() -> None:
+        with database.look() as tx:
+            tx.one(lambda *row: row, Prepared(BY_ID), id="a")
+
     with pytest.raises(sa.exc.DBAPIError) as caught:
-        rows(database, "a")
+        look()
     assert caught.value.connection_invalidated
     assert rows(database, "a") == []
     monkeypatch.setattr("storage.database.ASKED_AFTER", 0.0)
