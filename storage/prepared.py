@@ -73,11 +73,11 @@ def execute(connection: Connection, sql: str, parameters: _Parameters = ()) -> l
     return found
 
 
-def _wrapped(connection: Connection, sql: str, error: Exception) -> BaseException:
+def _wrapped(connection: Connection, sql: str, error: Any) -> BaseException:
     """Give SQLAlchemy's error for one of the driver; a connection that has broken is not used again."""
     dialect = connection.dialect
-    is_lost = dialect.is_disconnect(error, connection.connection.dbapi_connection, None)  # type: ignore[arg-type]
-    wrapped = sa.exc.DBAPIError.instance(
+    is_lost = dialect.is_disconnect(error, connection.connection.dbapi_connection, None)
+    wrapped: BaseException = sa.exc.DBAPIError.instance(
         sql,
         None,  # what was sent may be secret, and errors are logged
         error,

@@ -16,7 +16,7 @@ RADIANS = math.pi / 180.0
 
 
 @njit(cache=True, nogil=True)
-def pack(values, place, second, slow, t, f_s, w_s, fix_rows, none_rows, fix):
+def pack(values, place, unit, slow, t, f_s, w_s, fix_rows, none_rows, fix):
     """Put columns into the arrays that samples are made of.
 
     Parameters
@@ -25,8 +25,8 @@ def pack(values, place, second, slow, t, f_s, w_s, fix_rows, none_rows, fix):
         (columns, N) as they were sent, NaN for an empty cell
     place
         (16,) row of `values` for each of the columns named above, -1 where it was not sent
-    second
-        units of time in a second
+    unit
+        s, in which time was sent
     slow
         m/s, speed below which the course may be missing
     t, f_s, w_s
@@ -51,7 +51,7 @@ def pack(values, place, second, slow, t, f_s, w_s, fix_rows, none_rows, fix):
         if not (now >= before and math.isfinite(now) and math.isfinite(x) and math.isfinite(y) and math.isfinite(z)):
             return -1, 0
         before = now
-        t[i] = now * second
+        t[i] = now * unit
         f_s[i, 0], f_s[i, 1], f_s[i, 2] = x, y, z
     if place[GX] >= 0 and not pack_rates(values, place, w_s):
         return -1, 0

@@ -4,8 +4,8 @@ What each needs is computed first, one after the other; then all of them are sto
 commit. Whether one of them succeeds is nothing to the others.
 """
 
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import copy_context
 from functools import partial
 from typing import NamedTuple
@@ -67,20 +67,27 @@ def receive_together(context: Context, arrivals: Sequence[Arrival]) -> list[Outc
 def _foresee(context: Context, uploads: "Sequence[_Upload]") -> None:
     if not uploads:
         return
-    with context.database.look() as tx:
+    with _failing_together(uploads), context.database.look() as tx:
         for upload in uploads:
-            upload.look_up(tx)
+            upload.attempt(partial(upload.look_up, tx))
     for upload in uploads:
-        upload.attempt(upload.foresee)
+        if upload.is_open:
+            upload.attempt(upload.foresee)
 
 
 def _store(context: Context, uploads: "Sequence[_Upload]") -> None:
     if not uploads:
         return
+    with _failing_together(uploads), context.database.together() as transaction:
+        for upload in uploads:
+            upload.attempt(partial(upload.store, transaction))
+
+
+@contextmanager
+def _failing_together(uploads: "Sequence[_Upload]") -> Iterator[None]:
+    """Let an error of what they share be the error of each of them, and of no other."""
     try:
-        with context.database.together() as transaction:
-            for upload in uploads:
-                upload.attempt(partial(upload.store, transaction))
+        yield
     except Exception as error:
         for upload in uploads:
             upload.fail(error)

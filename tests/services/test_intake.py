@@ -9,11 +9,12 @@ from sqlalchemy import event
 
 from api import schemas
 from api.formats import FormatError, ParsedLog
-from api.services import access, fleet, ingest, intake, startup
+from api.services import access, fleet, foresight, ingest, intake, startup
 from api.services.context import Context
 from api.services.errors import ConflictError, NotFoundError
 from api.settings import Settings
 from storage.chunks import Body
+from storage.database import ReadSession
 from storage.models import chunks as chunk_table
 from tests.conftest import Clock
 from tests.drives import remounted
@@ -114,6 +115,35 @@ def test_when_the_commit_fails_none_is_acknowledged_and_all_can_come_again(conte
     assert [told(outcome) for outcome in outcomes] == ["OperationalError", "OperationalError", "NotFoundError"]
     assert receipts(context) == 0
     assert [told(outcome) for outcome in intake.receive_together(context, batch)][:2] == ["applied", "applied"]
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_a_device_that_cannot_be_looked_up_spoils_nothing_for_the_others(
+    context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    straight = foresight.look_up
+
+    def look_up(tx: ReadSession, device_id: str, session: str, seq: int) -> foresight.Stand | None:
+        if device_id == "a":
+            raise ValueError("what is stored of it is damaged")
+        return straight(tx, device_id, session, seq)
+
+    monkeypatch.setattr(foresight, "look_up", look_up)
+    outcomes = intake.receive_together(context, [arrival("a", 0), arrival("b", 0), arrival("c", 0)])
+    assert [told(outcome) for outcome in outcomes] == ["ValueError", "applied", "applied"]
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_a_chunk_that_was_refused_is_told_its_own_error_when_the_database_fails(
+    context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def look() -> None:
+        raise sa.exc.OperationalError("SELECT", None, Exception("disk I/O error"))
+
+    monkeypatch.setattr(context.database, "look", look)
+    outcomes = intake.receive_together(context, [arrival("a", 0), arrival("b", 0, b"t,ax\n1,x\n")])
+    assert [told(outcome) for outcome in outcomes] == ["OperationalError", "FormatError"]
+    assert receipts(context) == 0
 
 
 def test_each_is_worked_on_within_its_request(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
