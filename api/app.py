@@ -47,8 +47,12 @@ class State(TypedDict):
     rates: Rates
 
 
-def create_app(settings: Settings | None = None, clock: Callable[[], datetime] = utc_now) -> FastAPI:
-    """Make the application; settings come from the environment unless given."""
+def create_app(
+    settings: Settings | None = None,
+    clock: Callable[[], datetime] = utc_now,
+    when_ready: Callable[[], None] = lambda: None,
+) -> FastAPI:
+    """Make the application; settings come from the environment unless given; `when_ready` is called once."""
     chosen = settings or Settings()
     gate = Gate(chosen)
     allowed = Rates(chosen)
@@ -56,7 +60,7 @@ def create_app(settings: Settings | None = None, clock: Callable[[], datetime] =
         title="Livella",
         version=version("livella"),
         description="Automatic mounting-angle calibration for vehicle black boxes.",
-        lifespan=lambda _: _lifespan(chosen, clock, gate, allowed),
+        lifespan=lambda _: _lifespan(chosen, clock, gate, allowed, when_ready),
         docs_url=None,
         redoc_url=None,
         responses=errors.RESPONSES,
@@ -87,7 +91,7 @@ def _describe(app: FastAPI) -> None:
 
 @asynccontextmanager
 async def _lifespan(
-    settings: Settings, clock: Callable[[], datetime], gate: Gate, rates: Rates
+    settings: Settings, clock: Callable[[], datetime], gate: Gate, rates: Rates, when_ready: Callable[[], None]
 ) -> AsyncIterator[State]:
     metrics.forget_dead_processes()
     context = Context.make(settings, clock)
@@ -100,7 +104,7 @@ async def _lifespan(
     uploads = open_uploads(context)
     await hub.start()
     async with anyio.create_task_group() as tasks:
-        tasks.start_soon(_warm_up, context, ready)
+        tasks.start_soon(_warm_up, context, ready, when_ready)
         tasks.start_soon(hub.run)
         tasks.start_soon(housekeeping.run, context)
         with _ending_with(hub.close):
@@ -120,12 +124,13 @@ async def _lifespan(
     context.database.close()
 
 
-async def _warm_up(context: Context, ready: threading.Event) -> None:
+async def _warm_up(context: Context, ready: threading.Event, when_ready: Callable[[], None]) -> None:
     try:
         await to_thread.run_sync(startup.warm_up, context)
     except Exception:
         log.exception("the estimator cannot be compiled; the service stays unready")
         return
+    when_ready()
     ready.set()
     log.info("%s (process %d)", READY, os.getpid())
 

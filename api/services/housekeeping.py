@@ -28,9 +28,9 @@ class Job(NamedTuple):
     leader_only: bool = True
 
 
-def write_uses(context: Context) -> None:
-    """Write when keys were last used."""
-    context.uses.write(context.database)
+def write_uses(context: Context) -> bool:
+    """Write when some keys were last used; True when more are left."""
+    return context.uses.write(context.database)
 
 
 JOBS = (
@@ -60,7 +60,8 @@ async def run(context: Context) -> None:
 def finish(context: Context) -> None:
     """Do at the end what should not be lost."""
     try:
-        write_uses(context)
+        while write_uses(context):
+            continue
     except Exception:
         log.exception("when keys were last used cannot be written")
 

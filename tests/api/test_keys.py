@@ -10,6 +10,7 @@ from api.app import create_app
 from api.services import housekeeping, sign_ins, startup
 from api.services.access import Principal, Role, authenticate
 from api.services.context import Context
+from api.services.uses import AT_ONCE
 from api.services.errors import LastAdminError, UnauthenticatedError
 from api.services.keyring import Wanted, create, revoke
 from api.settings import Settings
@@ -232,6 +233,23 @@ def test_last_use_is_written_at_the_end(settings: Settings, clock: Clock, databa
     with TestClient(create_app(settings, clock)) as client:
         Api(client).get("/devices")
     assert last_used(database, "admin") == clock()
+
+
+def test_many_uses_are_written_in_small_transactions(client: TestClient, clock: Clock, database: Database) -> None:
+    context: Context = client.app_state["context"]
+    admin = last_key(database)
+    for key_pk in (*range(10_000, 10_000 + 2 * AT_ONCE), admin):
+        context.uses.mark(key_pk, clock())
+    assert housekeeping.write_uses(context)
+    assert housekeeping.write_uses(context)
+    assert last_used(database, "admin") is None
+    assert not housekeeping.write_uses(context)
+    assert last_used(database, "admin") == clock()
+
+
+def last_key(database: Database) -> int:
+    with database.read() as tx:
+        return max(key.pk for key in keys.every(tx))
 
 
 @pytest.mark.parametrize("backend", ["sqlite"], indirect=True)

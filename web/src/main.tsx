@@ -3,6 +3,7 @@ import "virtual:theme.css";
 import "./app/base.css";
 import { createRoot } from "react-dom/client";
 import { App } from "./app/App";
+import { startText } from "./text";
 
 const root = document.getElementById("root");
-if (root) createRoot(root).render(<App />);
+if (root) startText().then(() => createRoot(root).render(<App />));

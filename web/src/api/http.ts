@@ -18,10 +18,7 @@ export const http = createClient<paths>({ baseUrl: "/" });
 
 http.use({
   onError() {
-    return new Problem(
-      0,
-      "The service does not answer. Check the connection; this page tries again by itself.",
-    );
+    return new Problem(0, "The service does not answer.");
   },
 });
 

@@ -3,7 +3,7 @@ import type { QueryClient, QueryKey } from "@tanstack/react-query";
 import { apply, type LiveEvent } from "./apply";
 import { keys } from "./keys";
 
-export type LiveStatus = "connecting" | "live" | "reconnecting";
+export type LiveStatus = "connecting" | "live" | "reconnecting" | "asleep";
 
 const TYPES = ["installation", "alert", "device"] as const;
 
@@ -70,9 +70,14 @@ class LiveStream {
 
   readonly onVisibility = (): void => {
     clearTimeout(this.hide);
-    if (document.hidden) this.hide = setTimeout(() => this.close(), HIDDEN);
+    if (document.hidden) this.hide = setTimeout(() => this.sleep(), HIDDEN);
     else if (!this.source) this.open();
   };
+
+  private sleep(): void {
+    this.close();
+    this.onStatus("asleep");
+  }
 
   /** Whatever happened before the stream was open, or while it was away, is read again; then events resume. */
   private opened(): void {

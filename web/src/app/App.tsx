@@ -1,19 +1,27 @@
 import { MantineProvider } from "@mantine/core";
 import { QueryCache, QueryClient, QueryClientProvider } from "@tanstack/react-query";
+import { type ComponentType, lazy, Suspense } from "react";
 import { Redirect, Route, Switch } from "wouter";
 import { Problem } from "../api/http";
 import { keys } from "../api/keys";
-import { useSession } from "../api/session";
-import type { SignedIn } from "../api/types";
+import { atLeast, useSession } from "../api/session";
+import type { Role, SignedIn } from "../api/types";
 import { Failed, Loading } from "../components/States";
-import { DevicePage } from "../device/DevicePage";
-import { DevicesPage } from "../devices/DevicesPage";
+import { t, useLanguage } from "../text";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { LiveProvider } from "./Live";
 import { NotFound } from "./NotFound";
 import { Shell } from "./Shell";
 import { SignIn } from "./SignIn";
 import { theme } from "./theme";
+
+/** Each page comes when it is first opened, so that the first one is there soon. */
+const DevicesPage = lazy(() => import("../devices/DevicesPage").then((m) => ({ default: m.DevicesPage })));
+const DevicePage = lazy(() => import("../device/DevicePage").then((m) => ({ default: m.DevicePage })));
+const AlertsPage = lazy(() => import("../alerts/AlertsPage").then((m) => ({ default: m.AlertsPage })));
+const SettingsPage = lazy(() =>
+  import("../settings/SettingsPage").then((m) => ({ default: m.SettingsPage })),
+);
 
 /** A refusal (4xx) is an answer; only silence and the service's own trouble are worth another try. */
 function worthRetrying(count: number, error: Error): boolean {
@@ -30,7 +38,9 @@ function signedOut(error: Error): void {
   if (error instanceof Problem && error.status === 401) client.setQueryData(keys.session, null);
 }
 
+/** Another language is another page: everything is drawn anew. */
 export function App() {
+  const language = useLanguage();
   return (
     <MantineProvider
       theme={theme}
@@ -39,7 +49,7 @@ export function App() {
       withGlobalClasses={false}
     >
       <QueryClientProvider client={client}>
-        <ErrorBoundary>
+        <ErrorBoundary key={language}>
           <Gate />
         </ErrorBoundary>
       </QueryClientProvider>
@@ -55,7 +65,9 @@ function Gate() {
   return (
     <LiveProvider>
       <Shell session={session.data}>
-        <Pages session={session.data} />
+        <Suspense fallback={<Loading what={t("shell.this_page")} lines={8} />}>
+          <Pages session={session.data} />
+        </Suspense>
       </Shell>
     </LiveProvider>
   );
@@ -63,14 +75,21 @@ function Gate() {
 
 /** A device's key sees its own device and nothing else. */
 function Pages({ session }: { session: SignedIn }) {
-  const home = session.device_id && `/devices/${encodeURIComponent(session.device_id)}`;
+  const own = session.device_id;
+  const home = own === null ? "/devices" : `/devices/${encodeURIComponent(own)}`;
+  const page = (needed: Role, Page: ComponentType) =>
+    own === null && atLeast(session.role, needed) ? <Page /> : <Redirect to={home} replace />;
   return (
     <Switch>
-      <Route path="/">{home ? <Redirect to={home} replace /> : <Redirect to="/devices" replace />}</Route>
-      <Route path="/devices">{home ? <Redirect to={home} replace /> : <DevicesPage />}</Route>
+      <Route path="/">
+        <Redirect to={home} replace />
+      </Route>
+      <Route path="/devices">{page("installer", DevicesPage)}</Route>
       <Route path="/devices/:id">{({ id }) => <DevicePage key={id} id={id} />}</Route>
+      <Route path="/alerts">{page("manager", AlertsPage)}</Route>
+      <Route path="/settings/*?">{page("installer", SettingsPage)}</Route>
       <Route>
-        <NotFound what="This page" />
+        <NotFound title={t("shell.nowhere")} />
       </Route>
     </Switch>
   );

@@ -1,5 +1,6 @@
 import { Component, type ReactNode } from "react";
 import { Failed } from "../components/States";
+import { t } from "../text";
 
 /** A fault of the page itself: say so instead of showing nothing. */
 export class ErrorBoundary extends Component<{ children: ReactNode }, { error: Error | null }> {
@@ -12,6 +13,6 @@ export class ErrorBoundary extends Component<{ children: ReactNode }, { error: E
   override render() {
     const { error } = this.state;
     if (!error) return this.props.children;
-    return <Failed what="this page" error={error} retry={() => location.reload()} />;
+    return <Failed what={t("shell.this_page")} error={error} retry={() => location.reload()} />;
   }
 }

@@ -1,31 +1,48 @@
 import { useQueryClient } from "@tanstack/react-query";
 import { createContext, type ReactNode, useContext, useEffect, useState } from "react";
 import { connect, type LiveStatus } from "../api/live";
+import { RelativeTime } from "../components/RelativeTime";
+import { Trans, t } from "../text";
 import css from "./shell.module.css";
 
-const Status = createContext<LiveStatus>("connecting");
+interface Liveness {
+  status: LiveStatus;
+  /** RFC 3339: since when it is so */
+  since: string;
+}
+
+const NEW: Liveness = { status: "connecting", since: new Date().toISOString() };
+const State = createContext<Liveness>(NEW);
 
 /** Keeps everything below it live. */
 export function LiveProvider({ children }: { children: ReactNode }) {
   const client = useQueryClient();
-  const [status, setStatus] = useState<LiveStatus>("connecting");
-  useEffect(() => connect(client, setStatus), [client]);
-  return <Status value={status}>{children}</Status>;
+  const [liveness, setLiveness] = useState(NEW);
+  useEffect(() => connect(client, (status) => setLiveness((before) => after(before, status))), [client]);
+  return <State value={liveness}>{children}</State>;
 }
 
-const WORDS: Record<LiveStatus, string> = {
-  connecting: "Connecting…",
-  live: "Live",
-  reconnecting: "Connection lost, trying again…",
-};
+function after(before: Liveness, status: LiveStatus): Liveness {
+  return before.status === status ? before : { status, since: new Date().toISOString() };
+}
 
-/** Tells whether what is on the screen is true now. */
+/** Is what is on the screen true now? */
+export function useLive(): boolean {
+  return useContext(State).status === "live";
+}
+
+/** Tells whether what is on the screen is true now, and if not since when. */
 export function LiveLamp() {
-  const status = useContext(Status);
+  const { status, since } = useContext(State);
   return (
-    <span className={css.lamp} data-status={status} role="status">
+    <span className={css.lamp} data-status={status} title={t(`shell.live.${status}`)}>
       <i aria-hidden />
-      {WORDS[status]}
+      <span role="status">{t(`shell.live.${status}`)}</span>
+      {status === "reconnecting" && (
+        <small>
+          <Trans i18nKey="shell.lost" components={{ ago: <RelativeTime at={since} /> }} />
+        </small>
+      )}
     </span>
   );
 }

@@ -2,13 +2,15 @@ import { Anchor } from "@mantine/core";
 import { MapPinOff } from "lucide-react";
 import { Link } from "wouter";
 import { Empty } from "../components/States";
+import { t } from "../text";
 
-export function NotFound({ what }: { what: string }) {
+/** `title`: what does not exist, a whole sentence. */
+export function NotFound({ title }: { title: string }) {
   return (
     <div className="card">
-      <Empty icon={MapPinOff} as="h1" title={`${what} does not exist`}>
+      <Empty icon={MapPinOff} as="h1" title={title}>
         <Anchor component={Link} href="/devices">
-          To the list of devices
+          {t("shell.to_devices")}
         </Anchor>
       </Empty>
     </div>

@@ -1,30 +1,36 @@
 import { ActionIcon, Menu, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
-import { CircleUserRound, LogOut, Moon, Sun } from "lucide-react";
+import {
+  CircleUserRound,
+  LogOut,
+  type LucideIcon,
+  Moon,
+  Settings,
+  Sun,
+  TriangleAlert,
+  Truck,
+} from "lucide-react";
 import type { ReactNode } from "react";
-import { Link } from "wouter";
-import { useSignOut } from "../api/session";
+import { Link, useRoute } from "wouter";
+import { useSummary } from "../api/queries";
+import { atLeast, useSignOut } from "../api/session";
 import type { Role, SignedIn } from "../api/types";
+import { whole } from "../lib/format";
+import { t } from "../text";
+import { LanguageSwitch } from "./LanguageSwitch";
 import { LiveLamp } from "./Live";
 import { Logo } from "./Logo";
 import css from "./shell.module.css";
-
-const ROLE: Record<Role, string> = {
-  device: "Device",
-  installer: "Installer",
-  manager: "Fleet manager",
-  admin: "Administrator",
-};
 
 /** The frame of every page: where one is, whether it is live, who one is. */
 export function Shell({ session, children }: { session: SignedIn; children: ReactNode }) {
   return (
     <>
       <a className={css.skip} href="#main">
-        Skip to the content
+        {t("shell.skip")}
       </a>
       <header className={`${css.bar} no-print`}>
         <div className={css.inner}>
-          <Link href="/" className={css.brand} aria-label="Livella, home">
+          <Link href="/" className={css.brand} aria-label={t("shell.home")}>
             <Logo />
             <span>Livella</span>
           </Link>
@@ -34,11 +40,44 @@ export function Shell({ session, children }: { session: SignedIn; children: Reac
             <AccountMenu session={session} />
           </div>
         </div>
+        {session.device_id === null && <Places role={session.role} />}
       </header>
       <main id="main" className={css.main} tabIndex={-1}>
         {children}
       </main>
     </>
+  );
+}
+
+/** Where one can go; a device's key has one place only. */
+function Places({ role }: { role: Role }) {
+  const summary = useSummary();
+  return (
+    <nav className={css.places} aria-label={t("shell.places")}>
+      <Place to="/devices" icon={Truck} word={t("shell.devices")} />
+      {atLeast(role, "manager") && (
+        <Place to="/alerts" icon={TriangleAlert} word={t("shell.alerts")} count={summary.data?.open_alerts} />
+      )}
+      <Place to="/settings" icon={Settings} word={t("shell.settings")} />
+    </nav>
+  );
+}
+
+interface PlaceProps {
+  to: string;
+  icon: LucideIcon;
+  word: string;
+  count?: number | undefined;
+}
+
+function Place({ to, icon: Icon, word, count }: PlaceProps) {
+  const [here] = useRoute(`${to}/*?`);
+  return (
+    <Link href={to} className={css.place} aria-current={here ? "page" : undefined}>
+      <Icon size={18} aria-hidden />
+      {word}
+      {count !== undefined && count > 0 && <b>{whole(count)}</b>}
+    </Link>
   );
 }
 
@@ -49,7 +88,7 @@ function SchemeButton() {
   return (
     <ActionIcon
       onClick={() => setColorScheme(other)}
-      aria-label={`Switch to the ${other} colours`}
+      aria-label={t(other === "dark" ? "shell.to_dark" : "shell.to_light")}
       color="gray"
     >
       {scheme === "dark" ? <Sun size={20} aria-hidden /> : <Moon size={20} aria-hidden />}
@@ -60,9 +99,9 @@ function SchemeButton() {
 function AccountMenu({ session }: { session: SignedIn }) {
   const signOut = useSignOut();
   return (
-    <Menu position="bottom-end" width={220} withinPortal={false}>
+    <Menu position="bottom-end" width={240} withinPortal={false}>
       <Menu.Target>
-        <ActionIcon aria-label={`Account: ${session.name}`} color="gray">
+        <ActionIcon aria-label={t("shell.account", { name: session.name })} color="gray">
           <CircleUserRound size={22} aria-hidden />
         </ActionIcon>
       </Menu.Target>
@@ -70,10 +109,11 @@ function AccountMenu({ session }: { session: SignedIn }) {
         <Menu.Label>
           {session.name}
           <br />
-          {ROLE[session.role]}
+          {t(`shell.role.${session.role}`)}
         </Menu.Label>
+        <LanguageSwitch />
         <Menu.Item leftSection={<LogOut size={18} aria-hidden />} onClick={() => signOut.mutate()}>
-          Sign out
+          {t("shell.sign_out")}
         </Menu.Item>
       </Menu.Dropdown>
     </Menu>

@@ -2,6 +2,9 @@ import { Button, PasswordInput, Stack } from "@mantine/core";
 import { type FormEvent, useState } from "react";
 import { Problem } from "../api/http";
 import { useSignIn } from "../api/session";
+import { problemText } from "../lib/problem";
+import { t } from "../text";
+import { LanguageSwitch } from "./LanguageSwitch";
 import { Logo } from "./Logo";
 import css from "./shell.module.css";
 
@@ -20,12 +23,12 @@ export function SignIn() {
           <Logo size={32} />
           Livella
         </h1>
-        <p>How is the box mounted? Drive, and see.</p>
+        <p>{t("shell.motto")}</p>
         <form onSubmit={submit}>
           <Stack>
             <PasswordInput
-              label="Key"
-              description="From your administrator; the first one is printed when the service starts for the first time. A device’s own key shows that device."
+              label={t("shell.key")}
+              description={t("shell.key_about")}
               value={key}
               onChange={(event) => setKey(event.currentTarget.value)}
               error={signIn.error && refusal(signIn.error)}
@@ -33,21 +36,20 @@ export function SignIn() {
               autoCapitalize="off"
               spellCheck={false}
               errorProps={{ role: "alert" }}
-              visibilityToggleButtonProps={{ "aria-label": "Show the key" }}
+              visibilityToggleButtonProps={{ "aria-label": t("shell.show_key") }}
               required
             />
             <Button type="submit" size="lg" loading={signIn.isPending} fullWidth>
-              Sign in
+              {t("shell.sign_in")}
             </Button>
           </Stack>
         </form>
+        <LanguageSwitch />
       </div>
     </main>
   );
 }
 
 function refusal(error: Error): string {
-  if (!(error instanceof Problem) || error.status === 0) return error.message;
-  if (error.status === 401) return "This key is not known. Check that it was copied whole.";
-  return error.message;
+  return error instanceof Problem && error.status === 401 ? t("shell.key_unknown") : problemText(error);
 }

@@ -1,6 +1,7 @@
 import { ActionIcon } from "@mantine/core";
 import { Check, Copy } from "lucide-react";
 import { useRef, useState } from "react";
+import { t } from "../text";
 import css from "./copyable.module.css";
 
 /** Text to be carried elsewhere, with a copy button. */
@@ -16,12 +17,12 @@ export function Copyable({ label, text }: { label: string; text: string }) {
       <div className={css.label}>{label}</div>
       <div className={css.box}>
         <code ref={source}>{text}</code>
-        <ActionIcon onClick={copy} aria-label={`Copy: ${label}`}>
+        <ActionIcon onClick={copy} aria-label={t("common.copy", { label })}>
           {copied ? <Check size={20} aria-hidden /> : <Copy size={20} aria-hidden />}
         </ActionIcon>
       </div>
       <span className="visually-hidden" role="status">
-        {copied ? "Copied" : ""}
+        {copied && t("common.copied")}
       </span>
     </div>
   );

@@ -1,13 +1,15 @@
 import { Button, Skeleton, Stack } from "@mantine/core";
 import { CircleAlert, type LucideIcon, RotateCw } from "lucide-react";
 import type { ReactNode } from "react";
+import { problemText } from "../lib/problem";
+import { t } from "../text";
 import css from "./states.module.css";
 import { Notice } from "./Tone";
 
 /** Grey bars where the content will be. They appear late, so that a quick answer does not flicker. */
 export function Loading({ what, lines = 3 }: { what: string; lines?: number }) {
   return (
-    <div className={css.loading} role="status" aria-label={`Loading ${what}`}>
+    <div className={css.loading} role="status" aria-label={t("common.loading", { what })}>
       <Stack gap="sm">
         {Array.from({ length: lines }, (_, line) => `${90 - 13 * (line % 4)}%`).map((width, line) => (
           // biome-ignore lint/suspicious/noArrayIndexKey: the bars have no identity
@@ -36,11 +38,29 @@ export function Empty({ icon: Icon, title, as: Title = "p", children }: EmptyPro
   );
 }
 
+interface FailedProps {
+  /** what could not be loaded, such as "the devices" */
+  what: string;
+  error: Error;
+  retry?: () => void;
+}
+
+/** Something could not be loaded: why, and a way to try again. */
+export function Failed({ what, error, retry }: FailedProps) {
+  return <Trouble title={t("common.could_not_load", { what })} error={error} retry={retry} />;
+}
+
+interface TroubleProps {
+  title: string;
+  error: Error;
+  retry?: (() => void) | undefined;
+}
+
 /** What went wrong, in the service's words, and a way to try again. */
-export function Failed({ what, error, retry }: { what: string; error: Error; retry?: () => void }) {
+export function Trouble({ title, error, retry }: TroubleProps) {
   return (
-    <Notice tone="bad" icon={CircleAlert} title={`Could not load ${what}`} role="alert">
-      <p>{error.message}</p>
+    <Notice tone="bad" icon={CircleAlert} title={title} role="alert">
+      <p>{problemText(error)}</p>
       {retry && (
         <Button
           mt="sm"
@@ -49,7 +69,7 @@ export function Failed({ what, error, retry }: { what: string; error: Error; ret
           leftSection={<RotateCw size={16} aria-hidden />}
           onClick={retry}
         >
-          Try again
+          {t("common.try_again")}
         </Button>
       )}
     </Notice>

@@ -26,7 +26,7 @@ export function DevicePage({ id }: { id: string }) {
   const name = device.data?.name ?? id;
   useDocumentTitle(`${name} · Livella`);
   if (installation.error instanceof Problem && [403, 404].includes(installation.error.status)) {
-    return <NotFound what={`The device ${id}`} />;
+    return <NotFound title={`The device ${id} does not exist`} />;
   }
   if (installation.isPending || (listed && device.isPending)) return <Loading what="the device" lines={8} />;
   if (installation.isError) {

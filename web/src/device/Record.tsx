@@ -2,7 +2,7 @@ import type { Device, Installation } from "../api/types";
 import { Logo } from "../app/Logo";
 import { ClockTime } from "../components/RelativeTime";
 import { fixed } from "../lib/format";
-import { STAGE } from "../lib/stages";
+import { stageWord } from "../lib/stages";
 import { describe } from "../lib/words";
 import { MatrixTable } from "./NumbersSection";
 import { Drawings } from "./picture/Drawings";
@@ -46,7 +46,7 @@ function Facts({ name, device, installation }: RecordProps) {
       </Fact>
       <Fact term="Vehicle">{device?.vehicle ?? "–"}</Fact>
       <Fact term="Stage">
-        {mount?.status === "suspect" ? "Suspect: the device seems to have moved" : STAGE[stage].word}
+        {mount?.status === "suspect" ? "Suspect: the device seems to have moved" : stageWord(stage)}
       </Fact>
       <Fact term="Confirmed">{mount ? <ClockTime at={mount.confirmed_at} /> : "not yet"}</Fact>
       <Fact term="Drive test">

@@ -4,7 +4,8 @@ import type { Installation, Need, Verification } from "../api/types";
 import { ClockTime } from "../components/RelativeTime";
 import { Progress } from "../components/StageBadge";
 import { Notice } from "../components/Tone";
-import { NEED, STAGE } from "../lib/stages";
+import { NEED_ICON, stageWord } from "../lib/stages";
+import { t } from "../text";
 import { LevelStart } from "./LevelStart";
 import { levelHelps } from "./level";
 import { Stepper } from "./Stepper";
@@ -30,7 +31,7 @@ export function StageSection({ installation }: { installation: Installation }) {
         <span aria-hidden>{Math.round(progress * 100)} %</span>
       </div>
       <p className="visually-hidden" role="status">
-        Stage: {STAGE[stage].word}. {hint}
+        Stage: {stageWord(stage)}. {hint}
       </p>
     </section>
   );
@@ -64,11 +65,11 @@ function Needs({ needs }: { needs: readonly Need[] }) {
       <h2>Still needed</h2>
       <ul>
         {needs.map((need) => {
-          const { word, icon: Icon } = NEED[need];
+          const Icon = NEED_ICON[need];
           return (
             <li key={need}>
               <Icon size={22} aria-hidden />
-              {word}
+              {t(`common.need.${need}`)}
             </li>
           );
         })}

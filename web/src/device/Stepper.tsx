@@ -1,6 +1,6 @@
 import { Check } from "lucide-react";
 import type { Stage } from "../api/types";
-import { STAGE, STAGES } from "../lib/stages";
+import { STAGES, stageMeaning, stageWord } from "../lib/stages";
 import css from "./stage.module.css";
 
 type State = "done" | "current" | "ahead";
@@ -17,8 +17,8 @@ export function Stepper({ stage }: { stage: Stage }) {
         return (
           <li key={step} data-state={state} aria-current={i === now ? "step" : undefined}>
             <i aria-hidden>{done ? <Check size={16} strokeWidth={3} /> : i + 1}</i>
-            <span className={css.word} title={STAGE[step].meaning}>
-              {STAGE[step].word}
+            <span className={css.word} title={stageMeaning(step)}>
+              {stageWord(step)}
             </span>
             <span className="visually-hidden">{SAID[state]}</span>
           </li>

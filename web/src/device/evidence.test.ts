@@ -78,7 +78,7 @@ it("tells what is known in words, a line each", () => {
     "began, log time": "492 s",
     mount: "3",
     angle: "14°",
-    "turned about": "an axis pointing up (0.00, \u22120.10, 0.99)",
+    "turned about": "an axis pointing up (0.00, \u22120.10, 1.00)",
   });
   expect(told.began).toContain("22 Nov 2025");
   expect(told).not.toHaveProperty("fault");

@@ -1,7 +1,7 @@
 import { TriangleAlert } from "lucide-react";
 import type { DeviceFilter } from "../api/keys";
 import type { FleetSummary } from "../api/types";
-import { STAGE, STAGES } from "../lib/stages";
+import { STAGES, stageWord } from "../lib/stages";
 import css from "./devices.module.css";
 
 interface StageFilterProps {
@@ -25,7 +25,7 @@ export function StageFilter({ filter, onChange, summary }: StageFilterProps) {
       {STAGES.map((stage) => (
         <Chip
           key={stage}
-          word={STAGE[stage].word}
+          word={stageWord(stage)}
           count={summary && (summary.stages[stage] ?? 0)}
           pressed={filter.stage === stage}
           onPress={() => onChange({ ...filter, stage: filter.stage === stage ? "" : stage })}

@@ -1,4 +1,4 @@
-/** The stages of an installation, what may be missing in it, and how both are said. */
+/** The stages of an installation and what may be missing in it, and how both are shown. */
 import {
   Car,
   CircleCheckBig,
@@ -13,6 +13,7 @@ import {
   SlidersHorizontal,
 } from "lucide-react";
 import type { Need, Stage } from "../api/types";
+import { t } from "../text";
 
 export const STAGES = [
   "waiting",
@@ -24,26 +25,27 @@ export const STAGES = [
 
 export type Tone = "neutral" | "accent" | "good" | "warn" | "bad";
 
-interface StageText {
-  word: string;
-  meaning: string;
+interface StageLook {
   tone: Tone;
   icon: LucideIcon;
 }
 
-export const STAGE: Record<Stage, StageText> = {
-  waiting: { word: "Waiting", meaning: "No usable data yet", tone: "neutral", icon: RadioTower },
-  aligning: { word: "Aligning", meaning: "Finding the rough orientation", tone: "accent", icon: Compass },
-  settling: { word: "Settling", meaning: "Refining the angles", tone: "accent", icon: SlidersHorizontal },
-  verifying: { word: "Verifying", meaning: "Testing the result on the road", tone: "accent", icon: Route },
-  confirmed: { word: "Confirmed", meaning: "The mounting is known", tone: "good", icon: CircleCheckBig },
+export const STAGE: Record<Stage, StageLook> = {
+  waiting: { tone: "neutral", icon: RadioTower },
+  aligning: { tone: "accent", icon: Compass },
+  settling: { tone: "accent", icon: SlidersHorizontal },
+  verifying: { tone: "accent", icon: Route },
+  confirmed: { tone: "good", icon: CircleCheckBig },
 };
 
-export const NEED: Record<Need, { word: string; icon: LucideIcon }> = {
-  data: { word: "Data from the device", icon: RadioTower },
-  gps_fix: { word: "GPS reception", icon: Satellite },
-  motion: { word: "Drive", icon: Car },
-  turn: { word: "Turn corners", icon: CornerUpRight },
-  accelerate_or_brake: { word: "Accelerate and brake", icon: Gauge },
-  time: { word: "A little more time", icon: Hourglass },
+export const stageWord = (stage: Stage): string => t(`common.stage.${stage}`);
+export const stageMeaning = (stage: Stage): string => t(`common.stage_meaning.${stage}`);
+
+export const NEED_ICON: Record<Need, LucideIcon> = {
+  data: RadioTower,
+  gps_fix: Satellite,
+  motion: Car,
+  turn: CornerUpRight,
+  accelerate_or_brake: Gauge,
+  time: Hourglass,
 };

@@ -1,4 +1,5 @@
-/** Times for people. The service sends RFC 3339 UTC; people read their own clock. */
+/** Times for people. The service sends RFC 3339 UTC; people read their own clock, as their region writes it. */
+import { locale, t } from "../text";
 
 const STEPS: readonly { unit: Intl.RelativeTimeFormatUnit; seconds: number }[] = [
   { unit: "year", seconds: 31_557_600 },
@@ -7,14 +8,22 @@ const STEPS: readonly { unit: Intl.RelativeTimeFormatUnit; seconds: number }[] =
   { unit: "hour", seconds: 3600 },
   { unit: "minute", seconds: 60 },
 ];
-const relative = new Intl.RelativeTimeFormat("en", { numeric: "always" });
-const second = new Intl.DateTimeFormat("en-GB", { timeStyle: "medium" });
-const moment = new Intl.DateTimeFormat("en-GB", { dateStyle: "medium", timeStyle: "short" });
+
+const made = new Map<string, Intl.DateTimeFormat>();
+
+/** Formats are costly to make, and a table of times needs one of them many times. */
+function format(options: Intl.DateTimeFormatOptions): Intl.DateTimeFormat {
+  const name = `${locale()} ${JSON.stringify(options)}`;
+  const known = made.get(name) ?? new Intl.DateTimeFormat(locale(), options);
+  made.set(name, known);
+  return known;
+}
 
 /** "just now", "25 seconds ago", "3 hours ago". A clock that runs ahead of the service's gives "just now". */
 export function ago(then: Date, now: Date): string {
   const seconds = (now.getTime() - then.getTime()) / 1000;
-  if (seconds < 5) return "just now";
+  if (seconds < 5) return t("common.just_now");
+  const relative = new Intl.RelativeTimeFormat(locale(), { numeric: "always" });
   for (const step of STEPS) {
     if (seconds >= step.seconds) return relative.format(-Math.floor(seconds / step.seconds), step.unit);
   }
@@ -23,12 +32,12 @@ export function ago(then: Date, now: Date): string {
 
 /** "22 Nov 2025, 10:20" on the reader's clock. */
 export function onTheClock(time: Date): string {
-  return moment.format(time);
+  return format({ dateStyle: "medium", timeStyle: "short" }).format(time);
 }
 
 /** "10:20:05" on the reader's clock. */
 export function toTheSecond(time: Date): string {
-  return second.format(time);
+  return format({ timeStyle: "medium" }).format(time);
 }
 
 /** Seconds as people say them: "23 s", "4 min", "2 h 5 min". */

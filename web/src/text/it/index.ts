@@ -1,0 +1,21 @@
+/** Italiano. */
+import type { en, Translated } from "../en";
+import { alerts } from "./alerts";
+import { common } from "./common";
+import { device } from "./device";
+import { devices } from "./devices";
+import { history } from "./history";
+import { mounting } from "./mounting";
+import { settings } from "./settings";
+import { shell } from "./shell";
+
+export const it: Translated<typeof en> = {
+  alerts,
+  common,
+  device,
+  devices,
+  history,
+  mounting,
+  settings,
+  shell,
+};
