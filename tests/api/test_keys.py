@@ -10,9 +10,9 @@ from api.app import create_app
 from api.services import housekeeping, sign_ins, startup
 from api.services.access import Principal, Role, authenticate
 from api.services.context import Context
-from api.services.uses import AT_ONCE
 from api.services.errors import LastAdminError, UnauthenticatedError
 from api.services.keyring import Wanted, create, revoke
+from api.services.uses import AT_ONCE
 from api.settings import Settings
 from storage import keys
 from storage.database import Database
