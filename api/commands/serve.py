@@ -49,7 +49,7 @@ def app() -> FastAPI:
 
 
 def spare_the_lasting() -> None:
-    """Let the garbage collector pass over what is there now and stays: a look through it stops all uploads for 0.1 s."""
+    """Let the garbage collector pass over what is there now and stays: a look through it stops uploads for 0.1 s."""
     gc.collect()
     gc.freeze()
 
