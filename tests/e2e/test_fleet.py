@@ -34,7 +34,7 @@ def test_a_wrong_key_is_told_and_the_right_one_opens(visitor: Visitor, api: Api)
     assert cookie["httpOnly"]
     assert cookie["sameSite"] == "Strict"
     page.get_by_role("button", name="Account").click()
-    page.get_by_role("menuitem", name="Sign out").click()
+    page.get_by_role("button", name="Sign out").click()
     visitor.see("Sign in")
     page.reload()
     visitor.see("Sign in")

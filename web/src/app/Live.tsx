@@ -37,12 +37,14 @@ export function LiveLamp() {
   return (
     <span className={css.lamp} data-status={status} title={t(`shell.live.${status}`)}>
       <i aria-hidden />
-      <span role="status">{t(`shell.live.${status}`)}</span>
-      {status === "reconnecting" && (
-        <small>
-          <Trans i18nKey="shell.lost" components={{ ago: <RelativeTime at={since} /> }} />
-        </small>
-      )}
+      <span>
+        <span role="status">{t(`shell.live.${status}`)}</span>
+        {status === "reconnecting" && (
+          <small>
+            <Trans i18nKey="shell.lost" components={{ ago: <RelativeTime at={since} /> }} />
+          </small>
+        )}
+      </span>
     </span>
   );
 }

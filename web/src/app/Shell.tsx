@@ -1,4 +1,4 @@
-import { ActionIcon, Menu, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
+import { ActionIcon, Button, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
 import {
   CircleUserRound,
   LogOut,
@@ -14,6 +14,7 @@ import { Link, useRoute } from "wouter";
 import { useSummary } from "../api/queries";
 import { atLeast, useSignOut } from "../api/session";
 import type { Role, SignedIn } from "../api/types";
+import { Trouble } from "../components/States";
 import { whole } from "../lib/format";
 import { t } from "../text";
 import { LanguageSwitch } from "./LanguageSwitch";
@@ -96,26 +97,38 @@ function SchemeButton() {
   );
 }
 
+const ACCOUNT = "account";
+
+/** The browser's own popover: it closes on Escape and on a click elsewhere, and costs nothing to load. */
 function AccountMenu({ session }: { session: SignedIn }) {
   const signOut = useSignOut();
   return (
-    <Menu position="bottom-end" width={240} withinPortal={false}>
-      <Menu.Target>
-        <ActionIcon aria-label={t("shell.account", { name: session.name })} color="gray">
-          <CircleUserRound size={22} aria-hidden />
-        </ActionIcon>
-      </Menu.Target>
-      <Menu.Dropdown>
-        <Menu.Label>
-          {session.name}
+    <>
+      <ActionIcon
+        aria-label={t("shell.account", { name: session.name })}
+        color="gray"
+        popoverTarget={ACCOUNT}
+      >
+        <CircleUserRound size={22} aria-hidden />
+      </ActionIcon>
+      <div id={ACCOUNT} popover="auto" className={css.account}>
+        <p>
+          <b>{session.name}</b>
           <br />
           {t(`shell.role.${session.role}`)}
-        </Menu.Label>
+        </p>
         <LanguageSwitch />
-        <Menu.Item leftSection={<LogOut size={18} aria-hidden />} onClick={() => signOut.mutate()}>
+        {signOut.error && <Trouble title={t("shell.not_signed_out")} error={signOut.error} />}
+        <Button
+          variant="default"
+          fullWidth
+          leftSection={<LogOut size={18} aria-hidden />}
+          loading={signOut.isPending}
+          onClick={() => signOut.mutate()}
+        >
           {t("shell.sign_out")}
-        </Menu.Item>
-      </Menu.Dropdown>
-    </Menu>
+        </Button>
+      </div>
+    </>
   );
 }
