@@ -45,6 +45,8 @@ WebhookUrl = Annotated[str, StringConstraints(min_length=1, max_length=2048, pat
 Kinds = Annotated[list[AlertKind], Field(min_length=1, max_length=32)]
 Severities = Annotated[list[Severity], Field(min_length=1, max_length=8)]
 
+TRACE_ROWS = 130
+
 T = TypeVar("T")
 
 
@@ -97,6 +99,17 @@ class Angles(Document):
     yaw: float
 
 
+class SpeedTrace(Document):
+    """The drive test as it went: columns of equal length, about a row for each second of driving that was tested."""
+
+    t: list[float] = Field(description="Session clock, s.", max_length=TRACE_ROWS)
+    gps_mps: list[float] = Field(description="Speed that the GPS says, m/s.")
+    sensor_mps: list[float] = Field(
+        description="Speed that the accelerometer says under the mounting that is tested, m/s; "
+        "in the last row of a finished test it differs from the GPS by the error of the test."
+    )
+
+
 class Verification(Document):
     """The drive test."""
 
@@ -105,6 +118,9 @@ class Verification(Document):
     duration_s: float = Field(description="Driving the test takes, s.")
     error_mps: float | None = Field(description="Speed error of the test so far, m/s.")
     limit_mps: float = Field(description="Largest error that passes, m/s.")
+    trace: SpeedTrace | None = Field(
+        description="Of the running or the last test; null before the first, and of tests from before traces were kept."
+    )
 
 
 class Estimate(Document):
@@ -139,6 +155,19 @@ class Limits(Document):
     tilt_sigma_deg: float = Field(description="About the vehicle's x and y axes.")
 
 
+class LastData(Document):
+    """What the last applied chunk that had samples was like."""
+
+    session: str
+    sample_rate_hz: float | None = Field(description="IMU samples used a second; null of fewer than two.")
+    fix_rate_hz: float | None = Field(description="Valid GPS fixes used a second.")
+    has_fix: bool = Field(description="The receiver had a valid fix when it reported last.")
+    speed_mps: float | None = Field(description="Speed over ground at the last valid fix of the chunk.")
+    gyroscope: bool = Field(description="There are readings of a gyroscope.")
+    span_s: float = Field(description="Time from the first to the last sample, s.")
+    rejected: dict[str, int] = Field(description="Samples and fixes not used, by reason.")
+
+
 class Installation(Document):
     """Where an installation stands."""
 
@@ -154,6 +183,7 @@ class Installation(Document):
     limits: Limits
     open_alerts: int
     last_data_at: datetime | None = Field(description="When the last data came in.")
+    data: LastData | None = Field(description="What the last data were like; null before the first.")
     revision: int = Field(description="Rises with every change.")
 
 
@@ -262,6 +292,51 @@ class Upload(Document):
 
     chunk: Chunk
     installation: Installation
+
+
+class LostChunks(Document):
+    """Numbers of a session that never came, although later ones were applied."""
+
+    session: str
+    from_seq: int
+    to_seq: int = Field(description="The last of them.")
+    before: datetime = Field(description="When the chunk after them came in.")
+
+
+class SessionReception(Document):
+    """What came in of a session."""
+
+    session: str
+    started_at: datetime | None = Field(description="Zero of the session's clock, as far as it is known.")
+    first_seq: int
+    last_seq: int
+    chunks: int
+    samples: int
+    fixes: int
+
+
+class ReceptionRates(Document):
+    """Chunks in the order in which they came in: columns of equal length."""
+
+    time: list[datetime] = Field(description="When the chunk came in.")
+    sample_rate_hz: list[float | None] = Field(description="Null where it is not known.")
+    fix_rate_hz: list[float | None] = Field(description="Null where it is not known.")
+    rejected: list[int] = Field(description="Samples and fixes not used.")
+
+
+class Reception(Document):
+    """What became of the data of a device that came in within a period."""
+
+    since: datetime = Field(description="Later than asked for when more came in than is looked through.")
+    until: datetime
+    chunks: int
+    samples: int
+    fixes: int
+    rejected: dict[str, int] = Field(description="Samples and fixes not used, by reason.")
+    waiting: int = Field(description="Chunks that are ahead of their turn.")
+    lost: list[LostChunks] = Field(description="Newest first, at most 100.")
+    sessions: list[SessionReception] = Field(description="Newest first, at most 20.")
+    rates: ReceptionRates = Field(description="At most 500 rows; of more chunks evenly chosen ones.")
 
 
 # ---------------------------------------------------------------- alerts, webhooks, stream, sessions

@@ -1,5 +1,6 @@
 """The installation of a device: where it stands, its history, its mountings."""
 
+from datetime import timedelta
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Query, Response
@@ -7,7 +8,7 @@ from pydantic import AwareDatetime
 
 from api import schemas
 from api.dependencies import AnyDevice, BeforeNumber, CurrentContext, Installer, Limit
-from api.services import fleet, history, paging, presenting
+from api.services import fleet, history, paging, presenting, reception
 from api.services.errors import NotFoundError
 from storage import mounts
 
@@ -55,6 +56,17 @@ def read_estimates(
     """Give the angle history, thinned: first, last and changes of stage are kept."""
     with context.database.read() as tx:
         return history.read(tx, fleet.number(tx, device_id), start, end, max_points)
+
+
+@router.get("/health")
+def read_health(
+    device_id: AnyDevice,
+    context: CurrentContext,
+    hours: Annotated[int, Query(ge=1, le=720, description="Length of the period that ends now, h.")] = 24,
+) -> schemas.Reception:
+    """Tell what became of the data of the last hours: what came in, what was not used, what was lost."""
+    with context.database.read() as tx:
+        return reception.read(tx, fleet.number(tx, device_id), context.clock(), timedelta(hours=hours))
 
 
 @router.get("/mounts")

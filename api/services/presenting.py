@@ -105,14 +105,20 @@ def installation(
             "needs": shown["needs"],
             "hint": hint(row.stage, shown["needs"]),
             "estimate": None if now is None else now | rotation(now["quaternion"]),
-            "verification": shown["verification"],
+            "verification": tested(shown["verification"]),
             "mount": None if beside.mount is None else mount(beside.mount),
             "limits": limits(params),
             "open_alerts": beside.open_alerts,
             "last_data_at": row.last_data_at,
+            "data": shown.get("data"),
             "revision": row.revision,
         }
     )
+
+
+def tested(stored: dict[str, Any]) -> dict[str, Any]:
+    """Give a stored drive test; those from before traces were kept have none."""
+    return {"trace": None} | stored
 
 
 def limits(params: core.Parameters) -> dict[str, float]:
@@ -130,7 +136,7 @@ def mount(row: mounts.Mount) -> schemas.Mount:
             "sigma_deg": row.sigma_deg,
             "confirmed_at": utc(row.started_at, row.t),
             "status": row.status,
-            "verification": row.verification,
+            "verification": tested(row.verification),
         }
     )
 

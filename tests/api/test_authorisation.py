@@ -44,6 +44,7 @@ TABLE = {
     "POST /api/v1/devices/{device_id}/installation/restart": INSTALLER,
     "POST /api/v1/devices/{device_id}/installation/level": INSTALLER,
     "GET /api/v1/devices/{device_id}/estimates": OWN,
+    "GET /api/v1/devices/{device_id}/health": OWN,
     "GET /api/v1/devices/{device_id}/mounts": OWN,
     "GET /api/v1/devices/{device_id}/mounts/{n}": OWN,
     "GET /api/v1/devices/{device_id}/mount": OWN,

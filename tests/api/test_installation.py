@@ -39,11 +39,19 @@ def test_a_new_device_waits_for_data(device: Device) -> None:
         "needs": ["data"],
         "hint": "Waiting for data: switch the device on and check that it can send.",
         "estimate": None,
-        "verification": {"state": "idle", "elapsed_s": 0.0, "duration_s": 40.0, "error_mps": 0.0, "limit_mps": 2.5},
+        "verification": {
+            "state": "idle",
+            "elapsed_s": 0.0,
+            "duration_s": 40.0,
+            "error_mps": 0.0,
+            "limit_mps": 2.5,
+            "trace": None,
+        },
         "mount": None,
         "limits": {"yaw_sigma_deg": 1.3, "tilt_sigma_deg": 1.2},
         "open_alerts": 0,
         "last_data_at": None,
+        "data": None,
         "revision": 0,
     }
 

@@ -12,11 +12,12 @@ const installation = (over: Partial<Installation> = {}): Installation => ({
   needs: ["turn"],
   hint: "Turn a few corners.",
   estimate: null,
-  verification: { state: "idle", elapsed_s: 0, duration_s: 40, error_mps: null, limit_mps: 2.5 },
+  verification: { state: "idle", elapsed_s: 0, duration_s: 40, error_mps: null, limit_mps: 2.5, trace: null },
   mount: null,
   limits: { yaw_sigma_deg: 1.8, tilt_sigma_deg: 1.4 },
   open_alerts: 0,
   last_data_at: "2025-11-22T10:01:00Z",
+  data: null,
   revision: 7,
   ...over,
 });

@@ -253,6 +253,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/devices/{device_id}/health": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Health
+         * @description Tell what became of the data of the last hours: what came in, what was not used, what was lost.
+         */
+        get: operations["read_health"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/devices/{device_id}/mounts": {
         parameters: {
             query?: never;
@@ -1137,6 +1157,8 @@ export interface components {
              * @description When the last data came in.
              */
             last_data_at: string | null;
+            /** @description What the last data were like; null before the first. */
+            data: components["schemas"]["LastData"] | null;
             /**
              * Revision
              * @description Rises with every change.
@@ -1206,6 +1228,51 @@ export interface components {
             expires_at?: string | null;
         };
         /**
+         * LastData
+         * @description What the last applied chunk that had samples was like.
+         */
+        LastData: {
+            /** Session */
+            session: string;
+            /**
+             * Sample Rate Hz
+             * @description IMU samples used a second; null of fewer than two.
+             */
+            sample_rate_hz: number | null;
+            /**
+             * Fix Rate Hz
+             * @description Valid GPS fixes used a second.
+             */
+            fix_rate_hz: number | null;
+            /**
+             * Has Fix
+             * @description The receiver had a valid fix when it reported last.
+             */
+            has_fix: boolean;
+            /**
+             * Speed Mps
+             * @description Speed over ground at the last valid fix of the chunk.
+             */
+            speed_mps: number | null;
+            /**
+             * Gyroscope
+             * @description There are readings of a gyroscope.
+             */
+            gyroscope: boolean;
+            /**
+             * Span S
+             * @description Time from the first to the last sample, s.
+             */
+            span_s: number;
+            /**
+             * Rejected
+             * @description Samples and fixes not used, by reason.
+             */
+            rejected: {
+                [key: string]: number;
+            };
+        };
+        /**
          * Limits
          * @description What an estimate's 1 sigma must be below before a mounting is confirmed, degrees.
          */
@@ -1220,6 +1287,27 @@ export interface components {
              * @description About the vehicle's x and y axes.
              */
             tilt_sigma_deg: number;
+        };
+        /**
+         * LostChunks
+         * @description Numbers of a session that never came, although later ones were applied.
+         */
+        LostChunks: {
+            /** Session */
+            session: string;
+            /** From Seq */
+            from_seq: number;
+            /**
+             * To Seq
+             * @description The last of them.
+             */
+            to_seq: number;
+            /**
+             * Before
+             * Format: date-time
+             * @description When the chunk after them came in.
+             */
+            before: string;
         };
         /**
          * Mount
@@ -1387,6 +1475,79 @@ export interface components {
             message: string;
         };
         /**
+         * Reception
+         * @description What became of the data of a device that came in within a period.
+         */
+        Reception: {
+            /**
+             * Since
+             * Format: date-time
+             * @description Later than asked for when more came in than is looked through.
+             */
+            since: string;
+            /**
+             * Until
+             * Format: date-time
+             */
+            until: string;
+            /** Chunks */
+            chunks: number;
+            /** Samples */
+            samples: number;
+            /** Fixes */
+            fixes: number;
+            /**
+             * Rejected
+             * @description Samples and fixes not used, by reason.
+             */
+            rejected: {
+                [key: string]: number;
+            };
+            /**
+             * Waiting
+             * @description Chunks that are ahead of their turn.
+             */
+            waiting: number;
+            /**
+             * Lost
+             * @description Newest first, at most 100.
+             */
+            lost: components["schemas"]["LostChunks"][];
+            /**
+             * Sessions
+             * @description Newest first, at most 20.
+             */
+            sessions: components["schemas"]["SessionReception"][];
+            /** @description At most 500 rows; of more chunks evenly chosen ones. */
+            rates: components["schemas"]["ReceptionRates"];
+        };
+        /**
+         * ReceptionRates
+         * @description Chunks in the order in which they came in: columns of equal length.
+         */
+        ReceptionRates: {
+            /**
+             * Time
+             * @description When the chunk came in.
+             */
+            time: string[];
+            /**
+             * Sample Rate Hz
+             * @description Null where it is not known.
+             */
+            sample_rate_hz: (number | null)[];
+            /**
+             * Fix Rate Hz
+             * @description Null where it is not known.
+             */
+            fix_rate_hz: (number | null)[];
+            /**
+             * Rejected
+             * @description Samples and fixes not used.
+             */
+            rejected: number[];
+        };
+        /**
          * Redelivery
          * @description Deliveries that are tried anew.
          */
@@ -1402,6 +1563,29 @@ export interface components {
             device: components["schemas"]["Device"];
             /** Key */
             key: string;
+        };
+        /**
+         * SessionReception
+         * @description What came in of a session.
+         */
+        SessionReception: {
+            /** Session */
+            session: string;
+            /**
+             * Started At
+             * @description Zero of the session's clock, as far as it is known.
+             */
+            started_at: string | null;
+            /** First Seq */
+            first_seq: number;
+            /** Last Seq */
+            last_seq: number;
+            /** Chunks */
+            chunks: number;
+            /** Samples */
+            samples: number;
+            /** Fixes */
+            fixes: number;
         };
         /**
          * SignIn
@@ -1425,6 +1609,27 @@ export interface components {
             name: string;
             /** Device Id */
             device_id: string | null;
+        };
+        /**
+         * SpeedTrace
+         * @description The drive test as it went: columns of equal length, about a row for each second of driving that was tested.
+         */
+        SpeedTrace: {
+            /**
+             * T
+             * @description Session clock, s.
+             */
+            t: number[];
+            /**
+             * Gps Mps
+             * @description Speed that the GPS says, m/s.
+             */
+            gps_mps: number[];
+            /**
+             * Sensor Mps
+             * @description Speed that the accelerometer says under the mounting that is tested, m/s; in the last row of a finished test it differs from the GPS by the error of the test.
+             */
+            sensor_mps: number[];
         };
         /**
          * Upload
@@ -1464,6 +1669,8 @@ export interface components {
              * @description Largest error that passes, m/s.
              */
             limit_mps: number;
+            /** @description Of the running or the last test; null before the first, and of tests from before traces were kept. */
+            trace: components["schemas"]["SpeedTrace"] | null;
         };
         /**
          * Webhook
@@ -2175,6 +2382,40 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Estimates"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_health: {
+        parameters: {
+            query?: {
+                /** @description Length of the period that ends now, h. */
+                hours?: number;
+            };
+            header?: never;
+            path: {
+                device_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Reception"];
                 };
             };
             /** @description Problem details (RFC 9457) */

@@ -11,9 +11,12 @@ export type Estimate = Schemas["Estimate"];
 export type Estimates = Schemas["Estimates"];
 export type FleetSummary = Schemas["FleetSummary"];
 export type Installation = Schemas["Installation"];
+export type LastData = Schemas["LastData"];
 export type Mount = Schemas["Mount"];
+export type Reception = Schemas["Reception"];
 export type RegisteredDevice = Schemas["RegisteredDevice"];
 export type SignedIn = Schemas["SignedIn"];
+export type SpeedTrace = Schemas["SpeedTrace"];
 export type Verification = Schemas["Verification"];
 
 export type Stage = Installation["stage"];

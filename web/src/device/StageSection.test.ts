@@ -15,11 +15,12 @@ const installation = (stage: Stage): Installation => ({
   needs: ["turn"],
   hint: "Take a few turns.",
   estimate: null,
-  verification: { state: "idle", elapsed_s: 0, duration_s: 40, error_mps: null, limit_mps: 2.5 },
+  verification: { state: "idle", elapsed_s: 0, duration_s: 40, error_mps: null, limit_mps: 2.5, trace: null },
   mount: null,
   limits: { yaw_sigma_deg: 1.5, tilt_sigma_deg: 1.3 },
   open_alerts: 0,
   last_data_at: "2025-11-22T10:01:00Z",
+  data: null,
   revision: 7,
 });
 
