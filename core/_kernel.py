@@ -81,8 +81,10 @@ EPOCH = np.dtype(
         ("w_slope", "f8", (3,)),
         ("gyro", "?"),
         ("flat_tops", "i8"),  # samples at the end of the range
-        ("next_speed", "f8"),  # of the fix that ends it and begins the next
+        ("next_speed", "f8"),  # of the last fix, which ends it and begins the next, nan = not known
         ("next_course", "f8"),
+        ("tested_speed", "f8"),  # m/s at its end, by the sensor under the mounting on the drive test, nan = not told
+        ("test_begins", "?"),  # the first that is told of a test
     ]
 )
 """One epoch, the scratch record that passes from the clock to the stages."""
@@ -464,6 +466,7 @@ def describe_epoch(p, c, e, t, speed, course, fix):
 def take_fix(p, c, e, t, fix, counts, scratch):
     """Turn a valid fix into an epoch: whether one has ended, and whether `e` holds it whole."""
     c["valid_fix_t"] = t
+    e["next_speed"] = np.nan
     velocity = scratch[2]
     if not velocity_of_fix(p, c, t, fix, velocity):
         counts[FIX_WITHOUT_VELOCITY] += 1
@@ -472,6 +475,8 @@ def take_fix(p, c, e, t, fix, counts, scratch):
     if speed < 0 or speed > p["epoch_max_speed"]:
         counts[FIX_IMPLAUSIBLE] += 1
         return NO_EPOCH
+    e["next_speed"] = speed
+    e["next_course"] = course
     period = t - c["fix_t"]
     if period < p["epoch_min_epoch"]:
         return NO_EPOCH
@@ -479,8 +484,6 @@ def take_fix(p, c, e, t, fix, counts, scratch):
     watch_direction(p, c, speed, course)
     if speed >= p["epoch_moving_speed"]:
         c["motion_t"] = t
-    e["next_speed"] = speed
-    e["next_course"] = course
     if not period <= p["epoch_max_epoch"]:
         return OUTAGE
     if not describe_epoch(p, c, e, t, speed, course, fix):
@@ -488,6 +491,7 @@ def take_fix(p, c, e, t, fix, counts, scratch):
         return BROKEN
     e["usable"] = not c["reversing"] and c["flat_tops"] == 0
     e["flat_tops"] = c["flat_tops"]
+    e["tested_speed"] = np.nan
     return COMPLETE
 
 
@@ -1667,7 +1671,13 @@ def drive_test(p, v, m, e):
 
 @njit(cache=True, nogil=True)
 def drive_error(v, m, q, bias):
-    """Speed error after the test under a mounting: work of the forward specific force less the energy gained.
+    """Speed error after the test under a mounting."""
+    return abs(drive_departure(v, m, q, bias))
+
+
+@njit(cache=True, nogil=True)
+def drive_departure(v, m, q, bias):
+    """Speed by the sensor less that by the GPS: work of the forward specific force less the energy gained.
 
     The suspension adds to the forward specific force in proportion to the acceleration, the lever arm in curves.
     """
@@ -1678,7 +1688,18 @@ def drive_error(v, m, q, bias):
         work += r[0, i] * (v["impulse"][i] - bias[i] * v["distance"])
     gained = (1 + GRAVITY * m["suspension"][0]) * v["energy"] + GRAVITY * v["height"]
     excess = work - gained + m["lever_arm"][0] * v["turning"]
-    return abs(excess) * v["elapsed"] / max(v["distance"], 1e-9)
+    return excess * v["elapsed"] / max(v["distance"], 1e-9)
+
+
+@njit(cache=True, nogil=True)
+def tell_speed(p, v, m, e, elapsed):
+    """Tell the speed by the sensor: once in each second of driving tested, of which `elapsed` were before, and last."""
+    begins, ends = elapsed == 0.0, v["state"] != 1
+    if v["elapsed"] > elapsed and (begins or ends or math.floor(v["elapsed"]) > math.floor(elapsed)):
+        by_energy = p["verification_by_energy"]
+        departure = drive_departure(v, m, v["q_vs"], v["bias"]) if by_energy else v["excess"]
+        e["tested_speed"] = e["speed"] + departure
+        e["test_begins"] = begins
 
 
 @njit(cache=True, nogil=True)
@@ -2079,8 +2100,9 @@ def process_epoch(p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence,
     mounting_sigma(p, m["covariance"], MOUNTING, noise_ratio(p, a), sigma)
     settle(p, s, m, a, e, sigma)
     if v["state"] == 1:
-        before = count
+        before, elapsed = count, v["elapsed"]
         count = verify(p, s, v, m, e, sigma, events, count)
+        tell_speed(p, v, m, e, elapsed)
         moved_on = count > before and events[before, 2] == REASON_MOVED_ON
         return watch_looseness(p, f, g, e["t"], False, moved_on, events, evidence, count)
     if s["stable"] and s["reliable"] and not s["confirmed"]:
@@ -2194,16 +2216,29 @@ def report(p, c, a, m, s, v, rows, count):
 
 
 @njit(cache=True, nogil=True)
+def write_speed(e, speeds, count):
+    """Append the speeds of the drive test at the end of an epoch, when they are told."""
+    if not math.isfinite(e["tested_speed"]):
+        return count
+    row = speeds[count]
+    row[0] = e["t"]
+    row[1] = e["speed"]
+    row[2] = e["tested_speed"]
+    row[3] = e["test_begins"]
+    return count + 1
+
+
+@njit(cache=True, nogil=True)
 def run(
     params, clock, coarse, merged, mekf, settling, verification, change, faults, epochs,
-    t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, evidence, counts,
+    t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, evidence, speeds, counts,
 ):  # fmt: skip
-    """Take all samples of a chunk; mutates the state records; gives the number of rows and of events."""
+    """Take all samples of a chunk; mutates the state records; gives the number of rows, of events and of speeds."""
     p, c, a, x, m = params[0], clock[0], coarse[0], merged[0], mekf[0]
     s, v, g, f, e = settling[0], verification[0], change[0], faults[0], epochs[0]
     scratch = np.zeros((8, 8))
     b = np.zeros((3, 3))
-    row_count, event_count, next_fix, i = 0, 0, 0, 0
+    row_count, event_count, speed_count, next_fix, i = 0, 0, 0, 0, 0
     while i < t.shape[0]:
         stop = t.shape[0]
         if next_fix < fix_row.shape[0]:
@@ -2216,6 +2251,7 @@ def run(
                     event_count = process_epoch(
                         p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence, event_count
                     )
+                    speed_count = write_speed(e, speeds, speed_count)
                 elif end == OUTAGE:  # nobody knows how the vehicle has turned meanwhile
                     mekf[0]["aligned"] = mekf[1]["aligned"] = False
                     x["period"] = 0.0
@@ -2223,4 +2259,4 @@ def run(
                     start_epoch(c, t[i - 1], e["next_speed"], e["next_course"])
             next_fix += 1
         row_count = report(p, c, a, m, s, v, rows, row_count)
-    return row_count, event_count
+    return row_count, event_count, speed_count

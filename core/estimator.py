@@ -21,6 +21,7 @@ from core.events import (
     Mount,
     Needs,
     Outcome,
+    Speeds,
     Stage,
     Status,
     Verification,
@@ -58,6 +59,7 @@ _WITH_EVIDENCE = (EventKind.ORIENTATION_CHANGED, EventKind.FAULT)
 _ROW = 14
 _EVENT_ROW = 18
 _EVENTS_PER_FIX = 6
+_SPEED_ROW = 4
 
 
 def initial_state(params: Parameters) -> State:
@@ -107,11 +109,14 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
     limit = _EVENTS_PER_FIX * samples.fix_row.size + 1
     events = np.empty((limit, _EVENT_ROW))
     evidence = np.empty((limit, LOOKS, 2))
+    speeds = np.empty((samples.fix_row.size, _SPEED_ROW))
+    epochs = np.zeros(1, _kernel.EPOCH)
+    epochs["next_speed"] = np.nan
     counts = np.zeros(len(REJECTIONS), np.int64)
-    row_count, event_count = _kernel.run(
+    row_count, event_count, speed_count = _kernel.run(
         as_record(params),
         *state,
-        np.zeros(1, _kernel.EPOCH),
+        epochs,
         samples.t,
         samples.f_s,
         samples.w_s,
@@ -121,6 +126,7 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
         rows,
         events,
         evidence,
+        speeds,
         counts,
     )
     outcome = Outcome(
@@ -130,6 +136,8 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
         estimates=_estimates(rows[:row_count]),
         events=tuple(_event(params, row, series) for row, series in zip(events[:event_count], evidence, strict=False)),
         status=status(params, state),
+        speed=float(epochs["next_speed"][0]),
+        tested=_speeds(speeds[:speed_count]),
     )
     return state, outcome
 
@@ -182,6 +190,10 @@ def _estimates(rows: Floats) -> Estimates:
         reliable=rows[:, 11] > 0,
         progress=rows[:, 12].copy(),
     )
+
+
+def _speeds(rows: Floats) -> Speeds:
+    return Speeds(t=rows[:, 0].copy(), gps=rows[:, 1].copy(), sensor=rows[:, 2].copy(), begins=rows[:, 3] > 0)
 
 
 def _event(params: Parameters, row: Floats, series: Floats) -> Event:

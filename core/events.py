@@ -140,6 +140,19 @@ class Estimates(NamedTuple):
     """(K,) 0..1"""
 
 
+class Speeds(NamedTuple):
+    """Drive tests as they went: a row about each second of driving tested, one at the end, columns of K rows."""
+
+    t: Floats
+    """(K,) s, session clock"""
+    gps: Floats
+    """(K,) m/s, speed by the GPS"""
+    sensor: Floats
+    """(K,) m/s, speed by the accelerometer under the candidate; at the end of a test it is off by the error"""
+    begins: NDArray[np.bool_]
+    """(K,) the first row of a test"""
+
+
 class Estimate(NamedTuple):
     """The estimate now."""
 
@@ -187,3 +200,7 @@ class Outcome(NamedTuple):
     estimates: Estimates
     events: tuple[Event, ...]
     status: Status
+    speed: float
+    """m/s over ground at the last valid fix of the samples, NaN when it tells none that can be"""
+    tested: Speeds
+    """speeds of the drive tests"""

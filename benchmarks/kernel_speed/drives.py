@@ -82,7 +82,8 @@ def collect_epochs(chunk: Chunk) -> NDArray[np.void]:
         piece = samples.slice(first, int(row) + 1)
         first = int(row) + 1
         epoch = np.zeros(1, _kernel.EPOCH)
-        outputs = (np.zeros((2 * len(piece), 14)), np.zeros((16, 18)), np.empty((16, LOOKS, 2)), np.zeros(4, np.int64))
+        rows, events, speeds = np.zeros((2 * len(piece), 14)), np.zeros((16, 18)), np.empty((1, 4))
+        outputs = (rows, events, np.empty((16, LOOKS, 2)), speeds, np.zeros(4, np.int64))
         _kernel.run(
             params, *state, epoch, piece.t, piece.f_s, piece.w_s, piece.fix_row, piece.fix_valid, piece.fix, *outputs
         )

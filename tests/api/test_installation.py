@@ -272,5 +272,5 @@ def test_a_stage_began_at_the_first_row_that_shows_it(
     t = np.array([10.0 * n for n in range(1, len(rows) + 1)])
     table = core.Estimates(t, none, none, np.array(rows, np.int64), none, none, none, none)
     status: Any = type("Status", (), {"stage": core.Stage(final)})
-    outcome = core.Outcome(1, 0, {}, table, (), status)
+    outcome = core.Outcome(1, 0, {}, table, (), status, np.nan, core.Speeds(none, none, none, none))
     assert stage_began(core.Stage(before), outcome, 35.0) == began

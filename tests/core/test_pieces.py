@@ -1,35 +1,54 @@
 """A drive in any pieces through snapshots equals the drive at once, bit for bit."""
 
+from collections.abc import Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from core import DEFAULT, THESIS, Event, Parameters, Samples, State, advance, decode, encode, initial_state
+from core import DEFAULT, THESIS, Outcome, Parameters, Samples, State, advance, decode, encode, initial_state
 from tests.core.drives import drive, remounted, run
 
 
-def in_pieces(params: Parameters, samples: Samples, cuts: list[int]) -> tuple[State, list[np.ndarray], list[Event]]:
+class Whole(NamedTuple):
+    """What all pieces gave, one after the other."""
+
+    state: bytes
+    history: bytes
+    speeds: bytes
+    events: str
+
+
+def together(state: State, outcomes: Sequence[Outcome]) -> Whole:
+    return Whole(
+        encode(state),
+        joined([outcome.estimates for outcome in outcomes]),
+        joined([outcome.tested for outcome in outcomes]),
+        str([event for outcome in outcomes for event in outcome.events]),
+    )
+
+
+def joined(tables: Sequence[Sequence[np.ndarray]]) -> bytes:
+    rows = [np.column_stack([np.atleast_2d(column.T).T for column in table]) for table in tables]
+    return np.concatenate(rows).tobytes()
+
+
+def in_pieces(params: Parameters, samples: Samples, cuts: list[int]) -> Whole:
     state = initial_state(params)
-    history: list[np.ndarray] = []
-    events: list[Event] = []
+    outcomes: list[Outcome] = []
     edges = [0, *sorted(cuts), len(samples)]
     for start, stop in pairwise(edges):
         state, outcome = advance(params, decode(encode(state)), samples.slice(start, stop))
-        history.append(np.column_stack([np.atleast_2d(column.T).T for column in outcome.estimates]))
-        events += outcome.events
-    return state, history, events
+        outcomes.append(outcome)
+    return together(state, outcomes)
 
 
 def assert_same(params: Parameters, samples: Samples, cuts: list[int]) -> None:
     whole, outcome = run(samples, params)
-    state, history, events = in_pieces(params, samples, cuts)
-    assert encode(state) == encode(whole)
-    at_once = np.column_stack([np.atleast_2d(column.T).T for column in outcome.estimates])
-    assert np.concatenate(history).tobytes() == at_once.tobytes()
-    assert str(events) == str(list(outcome.events))
+    assert in_pieces(params, samples, cuts) == together(whole, [outcome])
 
 
 @pytest.mark.compiled
