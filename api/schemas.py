@@ -327,7 +327,7 @@ class ReceptionRates(Document):
 class Reception(Document):
     """What became of the data of a device that came in within a period."""
 
-    since: datetime = Field(description="Later than asked for when more came in than is looked through.")
+    since: datetime = Field(description="Later than asked for when receipts are not kept as long, or are too many.")
     until: datetime
     chunks: int
     samples: int

@@ -24,6 +24,9 @@ class Receipt(NamedTuple):
     fixes: int
     rejected: dict[str, int]
     received_at: datetime
+    t_first: float | None
+    """s on the session's clock; None of a chunk without samples, and of those from before it was kept"""
+    t_last: float | None
 
 
 class Body(NamedTuple):
@@ -48,6 +51,12 @@ _body = [chunks.c[name] for name in Body._fields]
 _this = (chunks.c.session_pk == sa.bindparam("of_session_pk")) & (chunks.c.seq == sa.bindparam("of_seq"))
 _find = Prepared(sa.select(*_receipt).where(_this))
 _find_waiting = sa.select(*_receipt, *_body).where(_this)
+_newest = Prepared(
+    sa.select(*_receipt)
+    .where(chunks.c.session_pk == sa.bindparam("of_session_pk"), chunks.c.seq < sa.bindparam("before"))
+    .order_by(chunks.c.seq.desc())
+    .limit(sa.bindparam("limit"))
+)
 _add = Prepared(sa.insert(chunks))
 _settle = sa.update(chunks).where(_this)
 _waiting = sa.select(sa.func.count(), sa.func.min(chunks.c.seq), sa.func.min(chunks.c.received_at)).where(
@@ -88,6 +97,11 @@ _devices_waiting = (
 def find(tx: ReadSession, session_pk: int, seq: int) -> Receipt | None:
     """Find the receipt of a chunk."""
     return tx.one(Receipt, _find, of_session_pk=session_pk, of_seq=seq)
+
+
+def newest(tx: ReadSession, session_pk: int, before: int, limit: int) -> list[Receipt]:
+    """Give up to `limit` receipts of a session, the highest number first, from before number `before`."""
+    return tx.all(Receipt, _newest, of_session_pk=session_pk, before=before, limit=limit)
 
 
 def find_waiting(tx: ReadSession, session_pk: int, seq: int) -> tuple[Receipt, Body]:

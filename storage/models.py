@@ -146,6 +146,8 @@ chunks = sa.Table(
     sa.Column("content_type", sa.Text),
     sa.Column("content_encoding", sa.Text),
     sa.Column("course", sa.String(16)),
+    sa.Column("t_first", sa.Double),
+    sa.Column("t_last", sa.Double),
     sa.Index("ix_chunks_received_at", "received_at"),
 )
 chunk_waits = chunks.c.state == sa.literal_column("'waiting'")

@@ -25,9 +25,25 @@ class Session(NamedTuple):
     started_at: datetime | None
 
 
+class Beginning(NamedTuple):
+    """When a session began."""
+
+    pk: int
+    name: str
+    started_at: datetime | None
+    created_at: datetime
+    """when it was first heard of"""
+
+
 _select = sa.select(*(sessions.c[name] for name in Session._fields))
 _find = Prepared(
     _select.where(sessions.c.device_pk == sa.bindparam("device_pk"), sessions.c.name == sa.bindparam("name"))
+)
+_newest = Prepared(
+    sa.select(*(sessions.c[name] for name in Beginning._fields))
+    .where(sessions.c.device_pk == sa.bindparam("of_device_pk"), sessions.c.pk < sa.bindparam("before"))
+    .order_by(sessions.c.pk.desc())
+    .limit(sa.bindparam("limit"))
 )
 _get = _select.where(sessions.c.pk == sa.bindparam("pk"))
 _add = sa.insert(sessions).returning(sessions.c.pk)
@@ -46,6 +62,11 @@ def find_or_add(tx: WriteSession, device_pk: int, name: str, now: datetime) -> S
         return found
     added = tx.execute(_add, device_pk=device_pk, name=name, next_seq=0, created_at=now)
     return Session(added.scalar_one(), name, 0, None, None)
+
+
+def newest(tx: ReadSession, device_pk: int, before: int, limit: int) -> list[Beginning]:
+    """Give up to `limit` sessions of a device, newest first, from before number `before`."""
+    return tx.all(Beginning, _newest, of_device_pk=device_pk, before=before, limit=limit)
 
 
 def get(tx: ReadSession, pk: int) -> Session:

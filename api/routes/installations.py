@@ -65,8 +65,10 @@ def read_health(
     hours: Annotated[int, Query(ge=1, le=720, description="Length of the period that ends now, h.")] = 24,
 ) -> schemas.Reception:
     """Tell what became of the data of the last hours: what came in, what was not used, what was lost."""
+    until = context.clock()
+    since = until - min(timedelta(hours=hours), timedelta(days=context.settings.receipt_days))
     with context.database.read() as tx:
-        return reception.read(tx, fleet.number(tx, device_id), context.clock(), timedelta(hours=hours))
+        return reception.read(tx, fleet.number(tx, device_id), since, until)
 
 
 @router.get("/mounts")

@@ -2,16 +2,28 @@
 
 import logging
 from datetime import datetime, timedelta
+from typing import Any
 
 import numpy as np
 
 import core
 from api import metrics, schemas
 from api.formats.log import Reading
-from api.services import alerting, findings, history, presenting, publishing, rules, watching
+from api.services import (
+    alerting,
+    findings,
+    history,
+    last_data,
+    presenting,
+    publishing,
+    rules,
+    speed_trace,
+    watching,
+)
 from api.services.context import Context
 from api.services.errors import UNKNOWN_DEVICE, NotFoundError, NotStillError, UnusableError
 from api.services.foresight import Foresight, advance
+from api.services.speed_trace import Trace
 from storage import installations, mounts
 from storage.database import WriteSession
 from storage.installations import Installation
@@ -75,7 +87,7 @@ class Calibration:
     def begin(self, session: Session) -> None:
         """The device was switched on: a new session, a new clock."""
         self._state = core.begin_session(self.context.params, self.state)
-        self.row = self.row._replace(session_pk=session.pk)
+        self.row = self.row._replace(session_pk=session.pk, status=speed_trace.end_session(self.row.status))
 
     def restart(self) -> None:
         """The device was refitted on purpose: forget the mounting, keep the history."""
@@ -83,7 +95,7 @@ class Calibration:
         mounts.supersede(self.tx, self.row.device_pk)
         alerting.refitted(self.tx, self.row.device_pk, self.now)
         self.row = self.row._replace(watch=rules.forget(self.row.watch, rules.OF_MOUNTING))
-        self._show(core.status(self.context.params, self.state))
+        self._show_anew()
         self.row = self.row._replace(since_session_pk=None, since_t=None, since_at=self.now)
 
     def level_start(self) -> None:
@@ -105,7 +117,7 @@ class Calibration:
         except core.NotStillError as error:
             raise NotStillError(str(error)) from error
         before = self.row.stage
-        self._show(core.status(self.context.params, self.state))
+        self._show_anew()
         if self.row.stage != before:
             self.row = self.row._replace(since_session_pk=None, since_t=None, since_at=self.now)
 
@@ -131,7 +143,7 @@ class Calibration:
         session = session._replace(started_at=started_at)
         lag = self.now - started_at - timedelta(seconds=t_last)
         metrics.LAG.observe(max(lag.total_seconds(), 0.0))
-        self._record(session, outcome, t_last, received_at)
+        self._record(session, reading, outcome, received_at)
         self._watch(session, reading.samples, outcome, received_at)
         return session, outcome
 
@@ -141,23 +153,24 @@ class Calibration:
             return self.foresight.state, self.foresight.outcome
         return advance(self.context.params, correction, self.state, reading.samples)
 
-    def _record(self, session: Session, outcome: core.Outcome, t_last: float, received_at: datetime) -> None:
+    def _record(self, session: Session, reading: Reading, outcome: core.Outcome, received_at: datetime) -> None:
         """Keep what a chunk brought: history, mountings, alerts, status."""
         before = STAGES[self.row.stage]
         history.append(self.tx, self.row.device_pk, session.pk, outcome.estimates, before, received_at)
         for event in outcome.events:
-            self._follow(session, event)
-        since = stage_began(before, outcome, t_last)
+            self._follow(session, event, speed_trace.carry_on(self._trace, outcome.tested, event.t))
+        since = stage_began(before, outcome, float(reading.samples.t[-1]))
         if since is not None:
             self.row = self.row._replace(since_session_pk=session.pk, since_t=since, since_at=self.now)
-        self._show(outcome.status)
+        trace = speed_trace.carry_on(self._trace, outcome.tested)
+        self._show(outcome.status, trace, last_data.describe(session.name, reading, outcome))
         self.row = self.row._replace(last_data_at=max(received_at, self.row.last_data_at or received_at))
 
-    def _follow(self, session: Session, event: core.Event) -> None:
+    def _follow(self, session: Session, event: core.Event, trace: Trace | None) -> None:
         """Turn an event into a mounting or an alert."""
         device_pk = self.row.device_pk
         if event.kind == core.EventKind.CONFIRMED:
-            self._confirm(session, event)
+            self._confirm(session, event, trace)
             alerting.end(self.tx, device_pk, [alerting.MOVED], "A new mounting was confirmed.", self.now)
         if event.kind == core.EventKind.ORIENTATION_CHANGED:
             mounts.suspect(self.tx, device_pk)
@@ -170,7 +183,7 @@ class Calibration:
         watch = watching.observe(self.tx, self.context, self.row, session, samples, outcome, received_at, self.now)
         self.row = self.row._replace(watch=watch)
 
-    def _confirm(self, session: Session, event: core.Event) -> None:
+    def _confirm(self, session: Session, event: core.Event, trace: Trace | None) -> None:
         if event.quaternion is None or event.sigma is None or event.verification is None:
             raise ValueError("a confirmed mounting without its values")
         mounts.add(
@@ -180,13 +193,22 @@ class Calibration:
             event.t,
             event.quaternion.tolist(),
             presenting.degrees(event.sigma),
-            presenting.verification(event.verification),
+            presenting.drive_test(event.verification, trace),
         )
 
-    def _show(self, status: core.Status) -> None:
-        self.row = self.row._replace(
-            stage=status.stage.word, status=presenting.status(status), revision=self.row.revision + 1
-        )
+    @property
+    def _trace(self) -> Trace | None:
+        trace: Trace | None = self.row.status["verification"].get("trace")
+        return trace
+
+    def _show_anew(self) -> None:
+        """Let it be seen where the installation stands without new data."""
+        status = core.status(self.context.params, self.state)
+        self._show(status, self._trace, self.row.status.get("data"))
+
+    def _show(self, status: core.Status, trace: Trace | None, data: dict[str, Any] | None) -> None:
+        shown = presenting.status(status, trace, data)
+        self.row = self.row._replace(stage=status.stage.word, status=shown, revision=self.row.revision + 1)
 
     def save(self) -> None:
         """Store the installation and tell the live stream, if anything has changed."""

@@ -86,11 +86,12 @@ def thin(stage: NDArray[Any], max_points: int) -> NDArray[np.int64]:
     changes = np.flatnonzero(np.diff(stage)) + 1
     needed = np.unique(np.concatenate([[0, n - 1], changes]))
     if needed.size >= max_points:
-        return needed[_evenly(needed.size, max_points)]
-    return np.union1d(needed, _evenly(n, max_points - needed.size))
+        return needed[evenly(needed.size, max_points)]
+    return np.union1d(needed, evenly(n, max_points - needed.size))
 
 
-def _evenly(n: int, count: int) -> NDArray[np.int64]:
+def evenly(n: int, count: int) -> NDArray[np.int64]:
+    """Choose `count` of `n`, evenly, the first and the last among them."""
     return np.unique(np.linspace(0, n - 1, count).round().astype(np.int64))
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from api import schemas
 from api.formats import FormatError, Limits, ParsedLog, Reading, parse
+from api.services import last_data
 from api.services.calibration import Calibration, last_time
 from api.services.context import Context
 from api.services.errors import (
@@ -160,10 +161,9 @@ def _refuse_late(calibration: Calibration, session: Session, seq: int) -> None:
 def _receipt(calibration: Calibration, session: Session, chunk: Chunk, digest: str, reading: Reading) -> Receipt:
     """Make the receipt of a chunk that waits; what cannot be used is refused now rather than when its turn comes."""
     samples, rejected, _ = reading
-    if len(samples):
-        last_time(samples)
+    span = (float(samples.t[0]), last_time(samples)) if len(samples) else (None, None)
     fixes = int(samples.fix_valid.sum())
-    return Receipt(session.pk, chunk.seq, digest, WAITING, len(samples), fixes, rejected, calibration.now)
+    return Receipt(session.pk, chunk.seq, digest, WAITING, len(samples), fixes, rejected, calibration.now, *span)
 
 
 def _enter(calibration: Calibration, session: Session) -> None:
@@ -215,10 +215,7 @@ def _apply(calibration: Calibration, session: Session, receipt: Receipt, reading
     sessions.save(calibration.tx, session._replace(next_seq=receipt.seq + 1))
     if outcome is None:
         return receipt._replace(state=APPLIED)
-    rejected = {
-        reason: reading.rejected.get(reason, 0) + outcome.rejected.get(reason, 0)
-        for reason in reading.rejected | outcome.rejected
-    }
+    rejected = last_data.rejected(reading, outcome)
     return receipt._replace(state=APPLIED, samples=outcome.samples, fixes=outcome.fixes, rejected=rejected)
 
 

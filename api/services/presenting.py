@@ -8,6 +8,7 @@ import numpy as np
 
 import core
 from api import schemas
+from api.services.speed_trace import Trace
 from storage import alerts, devices, installations, mounts
 
 HINTS = {
@@ -31,13 +32,14 @@ def hint(stage: str, needs: Iterable[str]) -> str:
     return NOTHING_NEEDED if stage == "confirmed" else HINTS["time"]
 
 
-def status(now: core.Status) -> dict[str, Any]:
-    """Give what is stored of the estimator's status: the part of the installation that it decides."""
+def status(now: core.Status, trace: Trace | None = None, data: dict[str, Any] | None = None) -> dict[str, Any]:
+    """Give what is stored of the estimator's status, with the speeds of its drive test and what the data were like."""
     return {
         "progress": now.progress,
         "needs": list(now.needs.words),
         "estimate": None if now.estimate is None else estimate(now.estimate),
-        "verification": verification(now.verification),
+        "verification": drive_test(now.verification, trace),
+        "data": data,
     }
 
 
@@ -52,8 +54,13 @@ def estimate(now: core.Estimate) -> dict[str, Any]:
     }
 
 
+def drive_test(test: core.Verification, trace: Trace | None) -> dict[str, Any]:
+    """Give what is stored of a drive test, with its speeds; one that has tested nothing yet has none."""
+    return verification(test) | {"trace": trace if test.elapsed > 0 else None}
+
+
 def verification(test: core.Verification) -> dict[str, Any]:
-    """Give a drive test."""
+    """Give how a drive test stands."""
     error = float(test.error)
     return {
         "state": test.state,
@@ -105,7 +112,7 @@ def installation(
             "needs": shown["needs"],
             "hint": hint(row.stage, shown["needs"]),
             "estimate": None if now is None else now | rotation(now["quaternion"]),
-            "verification": tested(shown["verification"]),
+            "verification": shown_test(shown["verification"]),
             "mount": None if beside.mount is None else mount(beside.mount),
             "limits": limits(params),
             "open_alerts": beside.open_alerts,
@@ -116,7 +123,7 @@ def installation(
     )
 
 
-def tested(stored: dict[str, Any]) -> dict[str, Any]:
+def shown_test(stored: dict[str, Any]) -> dict[str, Any]:
     """Give a stored drive test; those from before traces were kept have none."""
     return {"trace": None} | stored
 
@@ -136,7 +143,7 @@ def mount(row: mounts.Mount) -> schemas.Mount:
             "sigma_deg": row.sigma_deg,
             "confirmed_at": utc(row.started_at, row.t),
             "status": row.status,
-            "verification": tested(row.verification),
+            "verification": shown_test(row.verification),
         }
     )
 

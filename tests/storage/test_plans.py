@@ -15,6 +15,7 @@ from storage import (
     installations,
     leases,
     retention,
+    sessions,
 )
 from storage.alerts import Filter, Place
 from storage.database import Database, ReadSession, WriteSession
@@ -65,6 +66,8 @@ LOOKS: dict[str, Callable[[WriteSession], object]] = {
     "audit that goes": lambda tx: retention.audit_trail(tx, NOW, 100),
     "coarse history that goes": lambda tx: retention.coarse_history(tx, 5, 100),
     "events that go": lambda tx: events.forget(tx, NOW, 100),
+    "newest receipts of a session": lambda tx: chunks.newest(tx, 1, 5, 100),
+    "newest sessions of a device": lambda tx: sessions.newest(tx, 1, 5, 100),
     "sessions that wait": lambda tx: chunks.sessions_waiting(tx, 1, 5),
     "devices that wait": lambda tx: chunks.devices_waiting_since(tx, NOW, NOW),
     "a lease": lambda tx: leases.take(tx, "x", Lease("me", NOW), NOW, NOW),
