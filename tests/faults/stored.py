@@ -22,7 +22,8 @@ def of_device(database: Database, device_id: str) -> dict[str, list[Any]]:
             ).where(installations.c.device_pk == pk),
             "sessions": sa.select(sessions.c.name, sessions.c.next_seq, sessions.c.context).where(in_session),
             "chunks": sa.select(
-                chunks.c.seq, chunks.c.digest, chunks.c.state, chunks.c.samples, chunks.c.rejected, chunks.c.body
+                *(chunks.c.seq, chunks.c.digest, chunks.c.state, chunks.c.samples, chunks.c.rejected, chunks.c.body),
+                *(chunks.c.t_first, chunks.c.t_last),
             )
             .join(sessions)
             .where(in_session)
@@ -31,9 +32,9 @@ def of_device(database: Database, device_id: str) -> dict[str, list[Any]]:
             .join(sessions, sessions.c.pk == estimates.c.session_pk)
             .where(in_session)
             .order_by(estimates.c.pk),
-            "mounts": sa.select(mounts.c.n, mounts.c.t, mounts.c.quaternion, mounts.c.status).where(
-                mounts.c.device_pk == pk
-            ),
+            "mounts": sa.select(
+                mounts.c.n, mounts.c.t, mounts.c.quaternion, mounts.c.verification, mounts.c.status
+            ).where(mounts.c.device_pk == pk),
             "alerts": sa.select(alerts.c.kind, alerts.c.state, alerts.c.occurrences, alerts.c.data).where(
                 alerts.c.device_pk == pk
             ),

@@ -10,7 +10,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
-from storage import devices
+from storage import chunks, devices
 from storage.database import Database
 from storage.migrate import config, upgrade
 from storage.models import devices as device_table
@@ -101,6 +101,32 @@ def test_of_processes_that_start_at_once_one_shows_the_admin_key(empty_url: str,
     assert [start.returncode for start in starts] == [0, 0, 0]
     assert sorted(shown)[:2] == ["None", "None"]
     assert sorted(shown)[2].startswith("livella_")
+
+
+def test_receipts_survive_the_fourth_migration_and_its_undoing(empty_url: str) -> None:
+    database = Database(empty_url)
+    with database.write() as tx:
+        command.upgrade(config(tx.connection), "0003")
+        tx.execute(sa.text("INSERT INTO devices (pk, id, name, created_at) VALUES (1, 'a', 'A', 0)"))
+        tx.execute(sa.text("INSERT INTO sessions (pk, device_pk, name, next_seq, created_at) VALUES (1, 1, 's', 1, 0)"))
+        tx.execute(
+            sa.text(
+                "INSERT INTO chunks (session_pk, seq, digest, state, samples, fixes, rejected, received_at)"
+                " VALUES (1, 0, 'd', 'applied', 7, 3, '{}', 5)"
+            )
+        )
+    upgrade(database)
+    with database.write() as tx:
+        receipt = chunks.find(tx, 1, 0)
+        assert receipt is not None
+        assert (receipt.samples, receipt.fixes, receipt.t_first, receipt.t_last) == (7, 3, None, None)
+        chunks.add(tx, receipt._replace(seq=1, t_first=0.5, t_last=1.5))
+        assert chunks.find(tx, 1, 1) == receipt._replace(seq=1, t_first=0.5, t_last=1.5)
+        command.downgrade(config(tx.connection), "0003")
+        assert tx.all(int, sa.text("SELECT samples FROM chunks ORDER BY seq")) == [7, 7]
+        tx.connection.execute(sa.text("DELETE FROM devices"))
+        assert tx.value(sa.text("SELECT count(*) FROM chunks")) == 0
+    database.close()
 
 
 def test_devices_and_what_hangs_on_them_survive_the_second_migration_and_its_undoing(empty_url: str) -> None:

@@ -100,9 +100,13 @@ def test_the_service_runs_on_it(old_url: str, clock: Clock, tmp_path: Path) -> N
         assert [alert["id"] for alert in api.get("/alerts", params={"device_id": "old"})["items"]] == [4, 3]
         assert [mount["id"] for mount in device.get("mounts")["items"]] == [2, 1]
         assert len(device.get("estimates")["time"]) == 36
+        assert device.installation()["data"] is device.installation()["verification"]["trace"] is None
+        assert [mount["verification"]["trace"] for mount in device.get("mounts")["items"]] == [None, None]
         assert device.send(chunks()[0], 0, "second", expect=200).json()["chunk"]["duplicate"]
         device.send(chunks()[1], 1, "second", expect=200)
         assert device.send(chunks()[2], 2, "second", expect=200).json()["chunk"]["state"] == "applied"
+        assert device.installation()["data"]["sample_rate_hz"] == 50.0
+        assert device.get("health")["rates"]["sample_rate_hz"] == [None, None, 50.0]  # the last came in last
         assert len(device.get("estimates")["time"]) > 36
         coarsen(settings, clock)
         assert 3 < len(device.get("estimates")["time"]) < 20
