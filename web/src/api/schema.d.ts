@@ -1482,7 +1482,7 @@ export interface components {
             /**
              * Since
              * Format: date-time
-             * @description Later than asked for when more came in than is looked through.
+             * @description Later than asked for when receipts are not kept as long, or are too many.
              */
             since: string;
             /**
