@@ -26,6 +26,8 @@ AlertKind = Literal[
 ]
 Severity = Literal["info", "warning", "critical"]
 AlertState = Literal["open", "acknowledged", "resolved"]
+DeviceOrder = Literal["id", "-id", "name", "-name", "last_data_at", "-last_data_at"]
+ThresholdGroup = Literal["settling", "verification", "change", "alerts", "upload", "retention"]
 
 Vector3 = tuple[float, float, float]
 Vector4 = tuple[float, float, float, float]
@@ -458,6 +460,25 @@ class FleetSummary(Document):
     stages: dict[StageName, int]
     open_alerts: int
     alerts: dict[AlertKind, dict[Severity, int]] = Field(description="Open alerts by kind and severity.")
+    severities: dict[Severity, int] = Field(description="Devices with an open alert of each severity.")
+    silent: int = Field(description="Devices with an open alert `device_silent`.")
+    suspect: int = Field(description="Devices whose mounting is suspect.")
+
+
+class Threshold(Document):
+    """One of the numbers the service decides by."""
+
+    name: str = Field(description="As in `core/params.py`, `api/services/rules/limits.py` and the settings.")
+    group: ThresholdGroup
+    value: int | float | str = Field(description="`infinite` is the only text.")
+    unit: str = Field(description="Such as `deg`, `s`, `m/s`; empty when it is a mere number.")
+    meaning: str
+
+
+class Thresholds(Document):
+    """What the service decides by."""
+
+    items: list[Threshold]
 
 
 class KeyDraft(Document):

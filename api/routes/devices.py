@@ -30,9 +30,17 @@ def list_devices(
     ] = None,
     stage: schemas.StageName | None = None,
     has_open_alert: bool | None = None,
+    alert_kind: Annotated[schemas.AlertKind | None, Query(description="With an open alert of this kind.")] = None,
+    alert_severity: Annotated[
+        schemas.Severity | None, Query(description="With an open alert of this severity; of that kind, if both.")
+    ] = None,
+    sort: Annotated[
+        schemas.DeviceOrder,
+        Query(description="`-` turns the order round; a device that never sent data comes last either way."),
+    ] = "id",
     limit: Limit = 100,
 ) -> schemas.Page[schemas.Device]:
-    """List devices in the order of their ids."""
+    """List devices, by their ids unless another order is asked for; names are compared without regard to case."""
     with context.database.read() as tx:
         rows = devices.page(tx, limit + 1, after, q, stage, has_open_alert)
     return paging.page(rows, limit, lambda row: row.id, presenting.device)

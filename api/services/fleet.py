@@ -164,5 +164,8 @@ def summary(context: Context, principal: Principal) -> schemas.FleetSummary:
             "stages": {stage: stages.get(stage, 0) for stage in STAGES},
             "open_alerts": sum(count for _, _, count in counts),
             "alerts": by_kind,
+            "severities": {},
+            "silent": 0,
+            "suspect": 0,
         }
     )
