@@ -174,12 +174,7 @@ async def ready(request: Request) -> None:
 
 Body = Annotated[bytes, Depends(read_body)]
 Limit = Annotated[int, Query(ge=1, le=500, description="Items on a page.")]
-Cursor = Annotated[str | None, Query(max_length=512, description="`next_cursor` of the page before.")]
-
-
-async def cursor_text(cursor: Cursor = None) -> str | None:
-    """Give the text inside a cursor."""
-    return None if cursor is None else paging.decode(cursor)
+Cursor = Annotated[str | None, Query(max_length=2048, description="`next_cursor` of the page before.")]
 
 
 async def cursor_number(cursor: Cursor = None) -> int | None:
@@ -192,6 +187,5 @@ async def cursor_place(cursor: Cursor = None) -> tuple[datetime, int] | None:
     return None if cursor is None else paging.decode_place(cursor)
 
 
-AfterText = Annotated[str | None, Depends(cursor_text)]
 BeforeNumber = Annotated[int | None, Depends(cursor_number)]
 BeforePlace = Annotated[tuple[datetime, int] | None, Depends(cursor_place)]

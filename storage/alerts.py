@@ -105,6 +105,7 @@ _counts = (
     .where(alert_unresolved)
     .group_by(alerts.c.kind, alerts.c.severity)
 )
+_each_device = sa.select(alerts.c.severity, alerts.c.device_id).where(alert_unresolved).distinct()
 
 
 def find(tx: ReadSession, pk: int) -> Alert | None:
@@ -189,3 +190,10 @@ def counts(tx: ReadSession, device_pk: int | None = None) -> list[tuple[str, str
     """Count alerts that are not resolved: (kind, severity, count)."""
     statement = _counts if device_pk is None else _counts.where(alerts.c.device_pk == device_pk)
     return tx.all(lambda kind, severity, count: (kind, severity, count), statement)
+
+
+def devices_by_severity(tx: ReadSession, device_pk: int | None = None) -> dict[str, int]:
+    """Count devices with an alert that is not resolved, by its severity."""
+    each = (_each_device if device_pk is None else _each_device.where(alerts.c.device_pk == device_pk)).subquery()
+    statement = sa.select(each.c.severity, sa.func.count()).group_by(each.c.severity)
+    return dict(tx.all(lambda severity, count: (severity, count), statement))

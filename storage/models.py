@@ -40,6 +40,8 @@ BIG = sa.BigInteger().with_variant(sa.Integer(), "sqlite")
 NAME = sa.String(128)
 DEVICE_ID = sa.String(64).with_variant(sa.String(64, collation="C"), "postgresql")
 """Compared byte by byte on every database, so that a list's order and its cursors do not depend on a locale."""
+NAME_KEY = sa.Text().with_variant(sa.Text(collation="C"), "postgresql")
+"""A name without regard to case, compared in the same way."""
 
 metadata = sa.MetaData(
     naming_convention={
@@ -82,11 +84,14 @@ devices = sa.Table(
     sa.Column("accelerometer_calibration", sa.JSON(none_as_null=True)),
     sa.Column("created_at", Instant, nullable=False),
     sa.Column("search", sa.Text, nullable=False, server_default=""),
+    sa.Column("name_key", NAME_KEY, nullable=False, server_default=""),
     sqlite_autoincrement=True,
 )
+sa.Index("ix_devices_name_key_id", devices.c.name_key, devices.c.id).ddl_if(dialect="postgresql")
 sa.Index("ix_devices_id_search", devices.c.id, devices.c.search).ddl_if(dialect="sqlite")
-"""SQLite looks through texts in the order of ids here, without the rest of the rows. PostgreSQL's indexes do not take
-texts of any length, and it chooses by its statistics."""
+sa.Index("ix_devices_name_key_id_search", devices.c.name_key, devices.c.id, devices.c.search).ddl_if(dialect="sqlite")
+"""SQLite looks through texts in the order of ids or names here, without the rest of the rows. PostgreSQL's indexes do
+not take texts of any length, and it chooses by its statistics."""
 
 api_keys = sa.Table(
     "api_keys",
@@ -165,11 +170,12 @@ installations = sa.Table(
     sa.Column("since_t", sa.Double),
     sa.Column("since_at", Instant, nullable=False),
     sa.Column("status", sa.JSON, nullable=False),
-    sa.Column("last_data_at", Instant, index=True),
+    sa.Column("last_data_at", Instant),
     sa.Column("revision", sa.BigInteger, nullable=False),
     sa.Column("watch", sa.JSON(none_as_null=True)),
     _device_id(),
     sa.Index("ix_installations_stage_device_id", "stage", "device_id"),
+    sa.Index("ix_installations_last_data_at_device_id", "last_data_at", "device_id"),
 )
 
 estimates = sa.Table(
@@ -221,6 +227,8 @@ sa.Index(
     sqlite_where=mount_current,
     postgresql_where=mount_current,
 )
+mount_suspect = mounts.c.status == sa.literal_column("'suspect'")
+sa.Index("ix_mounts_suspect", mounts.c.device_pk, sqlite_where=mount_suspect, postgresql_where=mount_suspect)
 
 alerts = sa.Table(
     "alerts",
@@ -268,13 +276,14 @@ sa.Index(
     postgresql_where=alert_unresolved,
 )
 """Whether a device has open alerts is asked by its id: SQLite would take the number for the index of all alerts."""
-sa.Index(
-    "ix_alerts_unresolved_kind_severity",
-    alerts.c.kind,
-    alerts.c.severity,
-    sqlite_where=alert_unresolved,
-    postgresql_where=alert_unresolved,
-)
+for order in (("kind", "severity"), ("severity",)):
+    sa.Index(
+        f"ix_alerts_unresolved_{'_'.join(order)}",
+        *(alerts.c[name] for name in (*order, "device_id", "device_pk", "state")),
+        sqlite_where=alert_unresolved,
+        postgresql_where=alert_unresolved,
+    )
+"""All that is asked about devices with such alerts is in here: `state` too, at which SQLite looks once more."""
 
 events = sa.Table(
     "events",

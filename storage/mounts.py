@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import mount_current, mounts, sessions
+from storage.models import mount_current, mount_suspect, mounts, sessions
 
 IN_FORCE, SUSPECT, SUPERSEDED = "in_force", "suspect", "superseded"
 
@@ -32,6 +32,7 @@ _of_device = _select.where(mounts.c.device_pk == sa.bindparam("device_pk"))
 _find = _of_device.where(mounts.c.n == sa.bindparam("n"))
 _page = _of_device.order_by(mounts.c.n.desc()).limit(sa.bindparam("limit"))
 _last = sa.select(sa.func.max(mounts.c.n)).where(mounts.c.device_pk == sa.bindparam("device_pk"))
+_suspects = sa.select(sa.func.count()).select_from(mounts).where(mount_suspect)
 _add = sa.insert(mounts)
 _set_status = sa.update(mounts).where(_current)
 
@@ -70,6 +71,11 @@ def supersede(tx: WriteSession, device_pk: int) -> None:
 def suspect(tx: WriteSession, device_pk: int) -> None:
     """The current mounting is in doubt."""
     tx.execute(_set_status, of_device_pk=device_pk, status=SUSPECT)
+
+
+def suspects(tx: ReadSession, device_pk: int | None = None) -> int:
+    """Count devices whose current mounting is in doubt, all of them or only one."""
+    return int(tx.value(_suspects if device_pk is None else _suspects.where(mounts.c.device_pk == device_pk)))
 
 
 def current(tx: ReadSession, device_pk: int) -> Mount | None:

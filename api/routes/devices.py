@@ -5,10 +5,11 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query
 
 from api import schemas
-from api.dependencies import AfterText, CurrentContext, Installer, KnownId, Limit, Requires
+from api.dependencies import CurrentContext, Cursor, Installer, KnownId, Limit, Requires
 from api.services import fleet, paging, presenting
 from api.services.access import Role
-from storage import devices
+from storage import device_lists
+from storage.device_lists import Filter
 
 router = APIRouter(prefix="/devices", tags=["devices"], dependencies=[Depends(Requires(Role.INSTALLER))])
 
@@ -24,7 +25,6 @@ def register_device(
 @router.get("")
 def list_devices(
     context: CurrentContext,
-    after: AfterText,
     q: Annotated[
         schemas.Words | None, Query(description="Found in id, name, vehicle or notes (their first 1000 characters).")
     ] = None,
@@ -38,12 +38,15 @@ def list_devices(
         schemas.DeviceOrder,
         Query(description="`-` turns the order round; a device that never sent data comes last either way."),
     ] = "id",
+    cursor: Cursor = None,
     limit: Limit = 100,
 ) -> schemas.Page[schemas.Device]:
     """List devices, by their ids unless another order is asked for; names are compared without regard to case."""
+    after = None if cursor is None else paging.decode_place_in(sort, cursor)
+    wanted = Filter(q, stage, has_open_alert, alert_kind, alert_severity)
     with context.database.read() as tx:
-        rows = devices.page(tx, limit + 1, after, q, stage, has_open_alert)
-    return paging.page(rows, limit, lambda row: row.id, presenting.device)
+        rows = device_lists.page(tx, limit + 1, after, wanted, sort)
+    return paging.page(rows, limit, lambda row: paging.place_in(sort, row), presenting.device)
 
 
 @router.get("/{device_id}")

@@ -13,8 +13,9 @@ from api.services.access import Principal, Role
 from api.services.calibration import STAGES, Calibration
 from api.services.context import Context
 from api.services.errors import UNKNOWN_DEVICE, ConflictError, NotFoundError
+from api.services.rules import device_silent
 from core import Stage, initial_state, status
-from storage import alerts, devices, installations
+from storage import alerts, devices, installations, mounts
 from storage.database import ReadSession, WriteSession
 
 
@@ -155,6 +156,8 @@ def summary(context: Context, principal: Principal) -> schemas.FleetSummary:
     with context.database.read() as tx:
         stages = devices.stages(tx, principal.device_pk)
         counts = alerts.counts(tx, principal.device_pk)
+        severities = alerts.devices_by_severity(tx, principal.device_pk)
+        suspect = mounts.suspects(tx, principal.device_pk)
     by_kind: dict[str, dict[str, int]] = {}
     for kind, severity, count in counts:
         by_kind.setdefault(kind, {})[severity] = count
@@ -164,8 +167,8 @@ def summary(context: Context, principal: Principal) -> schemas.FleetSummary:
             "stages": {stage: stages.get(stage, 0) for stage in STAGES},
             "open_alerts": sum(count for _, _, count in counts),
             "alerts": by_kind,
-            "severities": {},
-            "silent": 0,
-            "suspect": 0,
+            "severities": {severity: severities.get(severity, 0) for severity in alerts.SEVERITIES},
+            "silent": sum(by_kind.get(device_silent.KIND, {}).values()),  # a device has one of a kind at most
+            "suspect": suspect,
         }
     )

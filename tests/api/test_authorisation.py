@@ -62,6 +62,7 @@ TABLE = {
     "POST /api/v1/webhooks/{webhook_id}/redeliver": MANAGER,
     "POST /api/v1/webhooks/{webhook_id}/test": MANAGER,
     "GET /api/v1/fleet/summary": ANY,
+    "GET /api/v1/thresholds": MANAGER,
     "GET /api/v1/stream": ANY,
     "GET /api/v1/keys": ADMIN,
     "POST /api/v1/keys": ADMIN,

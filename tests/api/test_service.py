@@ -76,7 +76,7 @@ def test_a_fault_of_ours_tells_no_internals(api: Api, monkeypatch: pytest.Monkey
     def fail(*_: object) -> None:
         raise RuntimeError("secret detail")
 
-    monkeypatch.setattr("storage.devices.page", fail)
+    monkeypatch.setattr("storage.device_lists.page", fail)
     problem = api.call("GET", "/devices", 500)
     assert problem.headers["content-type"] == "application/problem+json"
     assert "secret" not in problem.text

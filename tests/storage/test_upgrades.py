@@ -69,6 +69,7 @@ def test_nothing_is_lost_on_the_way_up_or_down(old_url: str, version: str) -> No
     assert {row["device_id"] for row in after["alerts"]} == {"old"}
     assert [row["device_id"] for row in after["installations"]] == ["old", "bare"]
     assert after["devices"][0]["search"] == "old\nold box\nhh-lv 1\näusserst alt"
+    assert [row["name_key"] for row in after["devices"]] == ["old box", "bare"]
     database.close()
 
 

@@ -1,0 +1,149 @@
+"""Lists of devices: in any order, with any filters, page by page from where an index has them in that order.
+
+A filter names a set of devices. One of a few begins the search; one of many is made once, and each device in the
+order's turn is looked up in it; of most devices, each one's belonging is looked up where it is kept. So a page never
+takes much longer than going through an index of all devices, wherever in the order those are that a filter names.
+"""
+
+from collections.abc import Iterator
+from datetime import datetime
+from typing import Any, NamedTuple
+
+import sqlalchemy as sa
+
+from storage.database import ReadSession
+from storage.devices import Device, select
+from storage.models import alert_unresolved, alerts, devices, installations
+
+FEW, MANY = 1000, 20_000
+"""devices of a filter: fewer are sorted as fast as they are found, more are not put into a set"""
+_plan_this_list = sa.text(
+    "SELECT set_config('plan_cache_mode', 'force_custom_plan', true), set_config('jit', 'off', true),"
+    " set_config('max_parallel_workers_per_gather', '0', true)"
+)
+"""For PostgreSQL. Whether many or few have a text decides how they are found: a plan made for any text takes it for
+common. Compiling, and starting processes, takes longer than a page may."""
+
+
+class Filter(NamedTuple):
+    """Which devices to list."""
+
+    q: str | None = None
+    """found in any text of a device"""
+    stage: str | None = None
+    has_open_alert: bool | None = None
+    alert_kind: str | None = None
+    alert_severity: str | None = None
+
+
+class Place(NamedTuple):
+    """A place in a list."""
+
+    id: str
+    key: str | datetime | None = None
+    """of what the list is ordered by, before the id"""
+
+
+class Order(NamedTuple):
+    """An order, by a key (if any) and then by id; both are in one index."""
+
+    pk: sa.ColumnElement[int]
+    id: sa.ColumnElement[str]
+    key: sa.ColumnElement[Any] | None = None
+    is_backwards: bool = False
+
+    @property
+    def columns(self) -> list[sa.ColumnElement[Any]]:
+        """What the index has, in its order."""
+        return [self.id] if self.key is None else [self.key, self.id]
+
+    @property
+    def terms(self) -> list[sa.ColumnElement[Any]]:
+        """What to order by."""
+        return [column.desc() if self.is_backwards else column for column in self.columns]
+
+
+_ORDERS = {
+    "id": Order(devices.c.pk, devices.c.id),
+    "name": Order(devices.c.pk, devices.c.id, devices.c.name_key),
+    "last_data_at": Order(installations.c.device_pk, installations.c.device_id, installations.c.last_data_at),
+}
+_of = installations.alias()
+_unresolved = sa.select(alerts.c.device_pk, alerts.c.device_id).where(alert_unresolved)
+
+
+def page(tx: ReadSession, limit: int, after: Place | None, wanted: Filter, sort: str = "id") -> list[Device]:
+    """Give up to `limit` devices from after a place; `-` before the order's name turns it round.
+
+    Those without the key that the list is ordered by come last, either way.
+    """
+    if tx.is_postgresql:
+        tx.connection.execute(_plan_this_list)
+    order = _ORDERS[sort.removeprefix("-")]._replace(is_backwards=sort.startswith("-"))
+    chosen = list(_chosen(tx, order, wanted))
+    found: list[Device] = []
+    for part in _parts(order, after):
+        ids = sa.select(order.id).where(*part, *chosen).order_by(*order.terms).limit(limit - len(found))
+        found += tx.all(Device, select.where(devices.c.id.in_(ids)).order_by(*order.terms))
+        if len(found) == limit:
+            break
+    return found
+
+
+def _parts(order: Order, after: Place | None) -> Iterator[list[sa.ColumnElement[bool]]]:
+    """Give the conditions of the parts of a list that are left after a place: with the key, and without it."""
+    if order.key is not installations.c.last_data_at:
+        yield _after(order, after)
+        return
+    if after is None or after.key is not None:
+        yield [order.key.is_not(None), *_after(order, after)]
+        after = None
+    yield [order.key.is_(None), *_after(order._replace(key=None), after)]
+
+
+def _after(order: Order, after: Place | None) -> list[sa.ColumnElement[bool]]:
+    if after is None:
+        return []
+    values = [after.id] if order.key is None else [after.key, after.id]
+    here = sa.tuple_(*order.columns)
+    there = sa.tuple_(*(sa.literal(value, column.type) for value, column in zip(values, order.columns, strict=True)))
+    return [here < there if order.is_backwards else here > there]
+
+
+def _chosen(tx: ReadSession, order: Order, wanted: Filter) -> Iterator[sa.ColumnElement[bool]]:
+    """Give the conditions of the filters, those that usually leave the fewest first."""
+    of_alert = {"kind": wanted.alert_kind, "severity": wanted.alert_severity}
+    named = [alerts.c[name] == value for name, value in of_alert.items() if value is not None]
+    if named or wanted.has_open_alert:
+        yield _belongs(tx, order, _unresolved.where(*named))
+    if wanted.stage is not None:
+        yield _belongs(tx, order, sa.select(_of.c.device_pk, _of.c.device_id).where(_of.c.stage == wanted.stage))
+    if wanted.has_open_alert is False:
+        yield _belongs(tx, order, _unresolved, wanted=False)
+    if wanted.q:
+        yield _has_text(tx, order, wanted.q)
+
+
+def _belongs(
+    tx: ReadSession, order: Order, members: sa.Select[int, str], wanted: bool = True
+) -> sa.ColumnElement[bool]:
+    """Tell whether a device is one of those whose number and id are given, or not, as the number of those demands."""
+    pk, device_id = members.selected_columns
+    number = tx.value(
+        sa.select(sa.func.count()).select_from(members.with_only_columns(device_id).limit(MANY).subquery())
+    )
+    if number >= MANY:
+        told = members.where(device_id == order.id).exists()
+        return told if wanted else ~told
+    if number < FEW and wanted:
+        return order.pk.in_(members.with_only_columns(pk))
+    # the limit takes none away, but assures PostgreSQL that the set will fit into its memory
+    return order.id.in_(members.with_only_columns(device_id).limit(MANY)).is_(wanted)
+
+
+def _has_text(tx: ReadSession, order: Order, q: str) -> sa.ColumnElement[bool]:
+    holds = devices.c.search.contains(q.casefold(), autoescape=True)
+    if order.id is devices.c.id:
+        return holds
+    found = sa.select(devices.c.pk, devices.c.id).where(holds)
+    return order.pk.in_(found.with_only_columns(devices.c.pk)) if tx.is_postgresql else _belongs(tx, order, found)
