@@ -194,6 +194,6 @@ def counts(tx: ReadSession, device_pk: int | None = None) -> list[tuple[str, str
 
 def devices_by_severity(tx: ReadSession, device_pk: int | None = None) -> dict[str, int]:
     """Count devices with an alert that is not resolved, by its severity."""
-    each = (_each_device if device_pk is None else _each_device.where(alerts.c.device_pk == device_pk)).subquery()
+    each = (_each_device if device_pk is None else _each_device.where(alerts.c.device_pk == device_pk)).subquery("some")
     statement = sa.select(each.c.severity, sa.func.count()).group_by(each.c.severity)
     return dict(tx.all(lambda severity, count: (severity, count), statement))

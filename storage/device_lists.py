@@ -127,23 +127,24 @@ def _chosen(tx: ReadSession, order: Order, wanted: Filter) -> Iterator[sa.Column
 def _belongs(
     tx: ReadSession, order: Order, members: sa.Select[int, str], wanted: bool = True
 ) -> sa.ColumnElement[bool]:
-    """Tell whether a device is one of those whose number and id are given, or not, as the number of those demands."""
+    """Tell whether a device is one of those whose number and id are given, or is not.
+
+    A database begins with those that a number must be IN; with what IS IN or not, it can do nothing but look.
+    """
     pk, device_id = members.selected_columns
-    number = tx.value(
-        sa.select(sa.func.count()).select_from(members.with_only_columns(device_id).limit(MANY).subquery())
-    )
+    some = members.with_only_columns(pk).limit(MANY)
+    number = tx.value(sa.select(sa.func.count()).select_from(some.subquery("some")))
     if number >= MANY:
         told = members.where(device_id == order.id).exists()
         return told if wanted else ~told
-    if number < FEW and wanted:
-        return order.pk.in_(members.with_only_columns(pk))
-    # the limit takes none away, but assures PostgreSQL that the set will fit into its memory
-    return order.id.in_(members.with_only_columns(device_id).limit(MANY)).is_(wanted)
+    within = order.pk.in_(some)  # the limit takes none away now, but assures PostgreSQL that a set fits into its memory
+    return within if number < FEW and wanted else within.is_(wanted)
 
 
 def _has_text(tx: ReadSession, order: Order, q: str) -> sa.ColumnElement[bool]:
+    """Tell whether a device has a text: PostgreSQL can guess how many have it, SQLite reads all texts in an index."""
     holds = devices.c.search.contains(q.casefold(), autoescape=True)
     if order.id is devices.c.id:
         return holds
-    found = sa.select(devices.c.pk, devices.c.id).where(holds)
-    return order.pk.in_(found.with_only_columns(devices.c.pk)) if tx.is_postgresql else _belongs(tx, order, found)
+    within = order.pk.in_(sa.select(devices.c.pk).where(holds))
+    return within if tx.is_postgresql else within.is_(True)

@@ -87,9 +87,11 @@ devices = sa.Table(
     sa.Column("name_key", NAME_KEY, nullable=False, server_default=""),
     sqlite_autoincrement=True,
 )
-sa.Index("ix_devices_name_key_id", devices.c.name_key, devices.c.id).ddl_if(dialect="postgresql")
-sa.Index("ix_devices_id_search", devices.c.id, devices.c.search).ddl_if(dialect="sqlite")
-sa.Index("ix_devices_name_key_id_search", devices.c.name_key, devices.c.id, devices.c.search).ddl_if(dialect="sqlite")
+_by_id, _by_name = (devices.c.id,), (devices.c.name_key, devices.c.id)
+sa.Index("ix_devices_id", *_by_id, postgresql_include=["pk"]).ddl_if(dialect="postgresql")
+sa.Index("ix_devices_name_key_id", *_by_name, postgresql_include=["pk"]).ddl_if(dialect="postgresql")
+sa.Index("ix_devices_id_search", *_by_id, devices.c.search).ddl_if(dialect="sqlite")
+sa.Index("ix_devices_name_key_id_search", *_by_name, devices.c.search).ddl_if(dialect="sqlite")
 """SQLite looks through texts in the order of ids or names here, without the rest of the rows. PostgreSQL's indexes do
 not take texts of any length, and it chooses by its statistics."""
 
@@ -174,8 +176,8 @@ installations = sa.Table(
     sa.Column("revision", sa.BigInteger, nullable=False),
     sa.Column("watch", sa.JSON(none_as_null=True)),
     _device_id(),
-    sa.Index("ix_installations_stage_device_id", "stage", "device_id"),
-    sa.Index("ix_installations_last_data_at_device_id", "last_data_at", "device_id"),
+    sa.Index("ix_installations_stage_device_id", "stage", "device_id", postgresql_include=["device_pk"]),
+    sa.Index("ix_installations_last_data_at_device_id", "last_data_at", "device_id", postgresql_include=["device_pk"]),
 )
 
 estimates = sa.Table(
@@ -276,13 +278,22 @@ sa.Index(
     postgresql_where=alert_unresolved,
 )
 """Whether a device has open alerts is asked by its id: SQLite would take the number for the index of all alerts."""
-for order in (("kind", "severity"), ("severity",)):
-    sa.Index(
-        f"ix_alerts_unresolved_{'_'.join(order)}",
-        *(alerts.c[name] for name in (*order, "device_id", "device_pk", "state")),
-        sqlite_where=alert_unresolved,
-        postgresql_where=alert_unresolved,
-    )
+_of_device = (alerts.c.device_id, alerts.c.device_pk, alerts.c.state)
+sa.Index(
+    "ix_alerts_unresolved_kind_severity",
+    alerts.c.kind,
+    alerts.c.severity,
+    *_of_device,
+    sqlite_where=alert_unresolved,
+    postgresql_where=alert_unresolved,
+)
+sa.Index(
+    "ix_alerts_unresolved_severity",
+    alerts.c.severity,
+    *_of_device,
+    sqlite_where=alert_unresolved,
+    postgresql_where=alert_unresolved,
+)
 """All that is asked about devices with such alerts is in here: `state` too, at which SQLite looks once more."""
 
 events = sa.Table(

@@ -1,11 +1,13 @@
 import pytest
 import sqlalchemy as sa
 
-from storage.database import Database
+from api.services import paging
+from storage import alerts, devices, mounts
+from storage.database import Database, WriteSession
 from storage.models import metadata
 from tests.conftest import Clock
 from tests.drives import chunks
-from tests.service import Api
+from tests.service import Api, Device
 
 
 def ids(page: dict[str, list[dict[str, str]]]) -> list[str]:
@@ -132,9 +134,57 @@ def test_the_list_is_filtered(api: Api) -> None:
     assert ids(api.get("/devices", params={"has_open_alert": False})) == ["a", "b"]
 
 
+def test_the_list_is_in_the_order_asked_for(api: Api, clock: Clock) -> None:
+    """Page by page, also where names are alike, of any script, and as long as they can be."""
+    long = "\u0390" * 128  # three times as long without regard to case
+    for device_id, name in (("a", "zebra"), ("b", "Ärmel"), ("c", "Zebra"), ("d", "apple"), ("e", long), ("f", long)):
+        api.add_device(device_id, name=name)
+    for device_id in ("c", "a"):
+        clock.advance(60)
+        Device(api, device_id, api.post(f"/devices/{device_id}/key")["key"]).send(chunks()[0], 0, expect=200)
+    assert by_pages(api, sort="name") == ["d", "a", "c", "b", "e", "f"]
+    assert by_pages(api, sort="-name") == ["f", "e", "b", "c", "a", "d"]
+    assert by_pages(api, sort="last_data_at") == ["c", "a", "b", "d", "e", "f"]
+    assert by_pages(api, sort="-last_data_at") == ["a", "c", "f", "e", "d", "b"]
+    assert by_pages(api, sort="-id", q="zebra") == ["c", "a"]
+    api.call("PATCH", "/devices/c", 200, json={"name": "aardvark"})
+    assert by_pages(api, sort="name")[:2] == ["c", "d"]
+
+
+def by_pages(api: Api, **query: str) -> list[str]:
+    page = api.get("/devices", params=query | {"limit": 1})
+    seen = ids(page)
+    while page["next_cursor"]:
+        page = api.get("/devices", params=query | {"limit": 1, "cursor": page["next_cursor"]})
+        seen += ids(page)
+    return seen
+
+
+@pytest.mark.parametrize("sort", ["id", "-id", "-name", "last_data_at"])
+def test_a_cursor_belongs_to_its_order(api: Api, sort: str) -> None:
+    for device_id in ("a", "b"):
+        api.add_device(device_id)
+    cursor = api.get("/devices", params={"limit": 1, "sort": "name"})["next_cursor"]
+    problem = api.get("/devices", 422, params={"cursor": cursor, "sort": sort})
+    assert problem["type"].endswith("invalid-cursor")
+    assert "another order" in problem["detail"]
+    assert ids(api.get("/devices", params={"cursor": cursor, "sort": "name"})) == ["b"]
+
+
+WRONG_PLACES = {
+    "id": ("", "id", "id a", "size a ", "id a\0 "),
+    "last_data_at": ("last_data_at a x", "last_data_at a -1", f"last_data_at a {10**16}"),
+}
+"""what is in a cursor, by the order it is given with"""
+
+
 @pytest.mark.parametrize(
     "query",
-    [{"limit": 0}, {"limit": 501}, {"stage": "x"}, {"cursor": "§"}, {"cursor": "_w"}, {"q": "x" * 129}, {"q": "\x00"}],
+    [
+        *({"limit": 0}, {"limit": 501}, {"stage": "x"}, {"cursor": "§"}, {"cursor": "_w"}, {"q": "x" * 129}),
+        *({"q": "\x00"}, {"sort": "stage"}, {"sort": "+id"}, {"alert_kind": "x"}, {"alert_severity": "error"}),
+        *({"cursor": paging.encode(place), "sort": sort} for sort, places in WRONG_PLACES.items() for place in places),
+    ],
 )
 def test_a_query_is_checked(api: Api, query: dict[str, object]) -> None:
     assert api.call("GET", "/devices", 422, params=query).json()["status"] == 422
@@ -147,3 +197,55 @@ def test_the_summary_counts_stages_and_alerts(api: Api) -> None:
     assert summary["devices"] == 2
     assert summary["stages"] == {"waiting": 1, "aligning": 0, "settling": 0, "verifying": 0, "confirmed": 1}
     assert (summary["open_alerts"], summary["alerts"]) == (0, {})
+    assert (summary["silent"], summary["suspect"]) == (0, 0)
+    assert summary["severities"] == {"info": 0, "warning": 0, "critical": 0}
+
+
+def test_devices_are_found_and_counted_by_what_is_the_matter(api: Api, database: Database, clock: Clock) -> None:
+    """A device counts once for a severity, and an alert that is over for nothing; a device counts itself alone."""
+    raised = {
+        "a": {"device_silent": "warning", "gps_lost": "warning"},
+        "b": {"device_silent": "critical"},
+        "c": {"gps_lost": "info", "device_silent": "resolved"},
+        "d": {},
+    }
+    known = {device_id: api.add_device(device_id) for device_id in raised}
+    with database.write() as tx:
+        for device_id, kinds in raised.items():
+            pk = devices.exists(tx, device_id)
+            assert pk is not None
+            _raise(tx, pk, kinds, clock)
+    summary = api.get("/fleet/summary")
+    assert summary["severities"] == {"info": 1, "warning": 1, "critical": 1}
+    assert (summary["silent"], summary["open_alerts"]) == (2, 4)
+    own = known["a"].api.get("/fleet/summary")
+    assert (own["severities"], own["silent"]) == ({"info": 0, "warning": 1, "critical": 0}, 1)
+    for filters, found in (
+        ({"alert_kind": "device_silent"}, ["a", "b"]),
+        ({"alert_severity": "warning"}, ["a"]),
+        ({"alert_kind": "gps_lost", "alert_severity": "info"}, ["c"]),
+        ({"alert_kind": "device_silent", "alert_severity": "info"}, []),
+        ({"alert_kind": "gps_lost", "has_open_alert": "false"}, []),
+        ({"alert_kind": "gps_lost", "q": "box c", "stage": "waiting"}, ["c"]),
+    ):
+        assert by_pages(api, **filters) == found, filters
+        assert by_pages(api, **filters, sort="-name") == found[::-1], filters
+
+
+def _raise(tx: WriteSession, pk: int, kinds: dict[str, str], clock: Clock) -> None:
+    for kind, severity in kinds.items():
+        shown = severity if severity != "resolved" else "warning"
+        number = alerts.raise_(tx, pk, alerts.Finding(kind, shown, "", {}), clock.now)
+        if severity == "resolved":
+            alerts.resolve(tx, number, "x", None, clock.now)
+
+
+def test_the_summary_counts_mountings_in_doubt(api: Api, database: Database) -> None:
+    for device_id in ("a", "b"):
+        api.add_device(device_id).send_all(chunks())
+    with database.write() as tx:
+        pk = devices.exists(tx, "b")
+        assert pk is not None
+        mounts.suspect(tx, pk)
+    assert api.get("/fleet/summary")["suspect"] == 1
+    assert [device["mount_status"] for device in api.get("/devices")["items"]] == ["in_force", "suspect"]
