@@ -42,7 +42,7 @@ from core.events import (
     Verification,
 )
 from core.level import NotStillError, level_start
-from core.params import DEFAULT, PRESETS, THESIS, Parameters, calibrated
+from core.params import DEFAULT, PRESETS, THESIS, Parameters, Threshold, calibrated, threshold, thresholds
 from core.samples import FIX_COLUMNS, SampleError, Samples
 from core.snapshot import SnapshotError, decode, encode
 from core.state import State
@@ -72,6 +72,7 @@ __all__ = [
     "Stage",
     "State",
     "Status",
+    "Threshold",
     "Verification",
     "accelerometer",
     "advance",
@@ -84,4 +85,6 @@ __all__ = [
     "quaternion",
     "restart",
     "status",
+    "threshold",
+    "thresholds",
 ]

@@ -7,12 +7,37 @@ prior takes a state out of the filter: the `thesis` preset is the 9-state filter
 import math
 from dataclasses import dataclass, field, fields, replace
 from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
 DEGREE = math.pi / 180
 MILLI_G = 9.80665e-3
+
+T = TypeVar("T")
+
+
+class Threshold(NamedTuple):
+    """One of the numbers decisions are made by that people may want to know."""
+
+    name: str
+    value: float
+    unit: str
+    meaning: str
+
+
+def threshold(default: T, unit: str, meaning: str) -> T:
+    """Declare a field that is a threshold; a mere number has the unit ''."""
+    return field(default=default, metadata={"unit": unit, "meaning": meaning})
+
+
+def thresholds(group: "DataclassInstance") -> list[Threshold]:
+    """Give those among the fields of a dataclass."""
+    return [Threshold(item.name, getattr(group, item.name), **item.metadata) for item in fields(group) if item.metadata]
 
 
 @dataclass(frozen=True)
@@ -193,22 +218,23 @@ class FilterParameters:
 class SettlingParameters:
     """Moving average, STABLE and RELIABLE (thesis 5.3)."""
 
-    average_window: float = 25.0
-    """s, length of the moving average; infinite = `average_epochs` whatever they last"""
-    stable_rate: float = 1.6e-3
-    """rad/s; STABLE when the average turns slower"""
+    average_window: float = threshold(
+        25.0, "s", "Length of the moving average; infinite: `average_epochs` whatever they last."
+    )
+    stable_rate: float = threshold(1.6e-3, "rad/s", "STABLE when its moving average turns slower.")
     reliable_yaw_rate: float = 0.0
     """rad/s; RELIABLE when exceeded (thesis); 0 = RELIABLE is a statement about information, below"""
-    start_yaw_sigma: float = 3.0 * DEGREE
-    """rad; RELIABLE, and so ready for the drive test, below"""
-    start_tilt_sigma: float = 1.6 * DEGREE
-    """rad; RELIABLE below"""
-    yaw_sigma: float = 1.3 * DEGREE
-    """rad; confirmed below"""
-    tilt_sigma: float = 1.2 * DEGREE
-    """rad; confirmed below"""
-    excitation: float = 15.0
-    """m2/s3, time integral of squared horizontal acceleration needed"""
+    start_yaw_sigma: float = threshold(
+        3.0 * DEGREE, "rad", "RELIABLE, and so ready for the drive test, with a sigma about the vertical below."
+    )
+    start_tilt_sigma: float = threshold(
+        1.6 * DEGREE, "rad", "RELIABLE, and so ready for the drive test, with sigmas about the other axes below."
+    )
+    yaw_sigma: float = threshold(1.3 * DEGREE, "rad", "Confirmed with a sigma about the vertical below.")
+    tilt_sigma: float = threshold(1.2 * DEGREE, "rad", "Confirmed with sigmas about the other axes below.")
+    excitation: float = threshold(
+        15.0, "m2/s3", "Time integral of squared horizontal acceleration needed before a drive test."
+    )
     doubt: float = 6.0
     """variance of the velocity over the last seconds, relative to the longer run, above which nothing is concluded"""
     second_opinion_sigmas: float = 3.0
@@ -223,14 +249,14 @@ class SettlingParameters:
 class VerificationParameters:
     """The drive test (thesis 5.4)."""
 
-    duration: float = 40.0
-    """s, t_test"""
-    limit: float = 2.5
-    """m/s"""
-    longest: float = 120.0
-    """s; a test goes on so long while the estimate is not yet good enough to be confirmed"""
-    drift: float = 2.5 * DEGREE
-    """rad; the estimate must not move farther from the candidate during the test"""
+    duration: float = threshold(40.0, "s", "Driving that the drive test takes, t_test.")
+    limit: float = threshold(2.5, "m/s", "Largest speed error that passes the drive test.")
+    longest: float = threshold(
+        120.0, "s", "A test goes on so long while the estimate is not yet good enough to be confirmed."
+    )
+    drift: float = threshold(
+        2.5 * DEGREE, "rad", "The estimate must not move farther from the candidate during the test."
+    )
     by_energy: bool = True
     """compare the work of the forward specific force with kinetic and potential energy; False: (5.6) as printed"""
 
@@ -239,18 +265,17 @@ class VerificationParameters:
 class ChangeParameters:
     """Orientation change (thesis 5.5): a second filter, the challenger, that knows nothing of the mounting."""
 
-    window: float = 240.0
-    """s of motion after which the challenger begins anew; infinite = no detection"""
+    window: float = threshold(240.0, "s", "Motion after which the challenger begins anew; infinite: no detection.")
     interval: float = 5.0
     """s of motion between two looks"""
     sigma: float = 25 * DEGREE
     """rad, what the challenger begins with, per axis"""
     suspicion: float = 14.0
     """squared Mahalanobis distance (3 degrees of freedom) that makes it begin anew, on new data alone"""
-    decision: float = 32.0
-    """the distance that decides then"""
-    looks: int = 4
-    """looks in a row that must show it"""
+    decision: float = threshold(
+        32.0, "", "Squared Mahalanobis distance (3 degrees of freedom) of the challenger that decides."
+    )
+    looks: int = threshold(4, "", "Looks in a row that must show a change.")
     innocent: float = 6.0
     """a distance below speaks for the confirmed mounting"""
     sure_sigma: float = 3.0 * DEGREE
@@ -259,8 +284,7 @@ class ChangeParameters:
     """m2/s3, squared acceleration the challenger must have seen to decide"""
     quiet: float = 60.0
     """s of motion without acceleration after which a suspicious challenger begins anew: this may be a ferry"""
-    min_angle: float = 4.0 * DEGREE
-    """rad; smaller changes are not reported"""
+    min_angle: float = threshold(4.0 * DEGREE, "rad", "Smaller changes of the orientation are not reported.")
     reference_angle: float = 2.0 * DEGREE
     """rad; the filter is the reference, being better than the confirmed mounting, while it is no farther from that"""
 
@@ -275,18 +299,17 @@ class FaultParameters:
     """log likelihood ratio below which the axes are taken to be right-handed; before, nothing is confirmed"""
     mirror_doubt: float = 6.0
     """log likelihood ratio at which that is taken back"""
-    stuck_time: float = 20.0
-    """s of motion in which an axis repeats one value while another moves, until it is reported"""
+    stuck_time: float = threshold(
+        20.0, "s", "Motion in which an axis repeats one value while another moves, until it is reported."
+    )
     stuck_doubt: float = 2.0
     """s of it after which epochs are not used"""
     saturation_memory: float = 60.0
     """s over which readings at the end of the range are counted"""
     saturation_time: float = 6.0
     """s of them that are reported"""
-    loose: float = 2.5
-    """changes of the mounting within `loose_memory` that make a device loose"""
-    loose_memory: float = 7200.0
-    """s in which a change fades"""
+    loose: float = threshold(2.5, "", "Changes of the mounting within `loose_memory` that make a device loose.")
+    loose_memory: float = threshold(7200.0, "s", "Time in which a change of the mounting fades.")
     moved_on_weight: float = 0.5
     """changes that a drive test counts as whose candidate the estimate left"""
 

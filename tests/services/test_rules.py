@@ -146,7 +146,7 @@ def test_the_settings_reach_the_limits() -> None:
     changed = Limits.of(
         Settings(alert_stalled_minutes=1, alert_failed_tests=2, alert_gps_lost_minutes=3, alert_silent_hours=4)
     )
-    assert changed[:3] == (60.0, 2, 180.0)
+    assert (changed.stalled_driving, changed.failed_tests, changed.without_fix) == (60.0, 2, 180.0)
     assert changed.silent == timedelta(hours=4)
     assert Limits.of(Settings()) == LIMITS
 

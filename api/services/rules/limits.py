@@ -1,14 +1,17 @@
 """The thresholds of the rules, in one table: what raises an alert, and the milder value that ends it."""
 
+from dataclasses import dataclass
 from datetime import timedelta
-from typing import NamedTuple, Self
+from typing import Self
 
 from api.settings import Settings
+from core import threshold
 
 MINUTE, HOUR = 60.0, 3600.0
 
 
-class Limits(NamedTuple):
+@dataclass(frozen=True)
+class Limits:
     """Thresholds; seconds are of the device's clock unless it says otherwise."""
 
     stalled_driving: float = 30 * MINUTE
@@ -21,23 +24,24 @@ class Limits(NamedTuple):
     """s of data without a GPS fix"""
     fix_share: float = 0.5
     """share of a chunk's time with a fix from which on the chunk counts as one with a fix"""
-    fix_sustained: float = MINUTE
-    """s of chunks with a fix, one after the other, that end it"""
+    fix_sustained: float = threshold(MINUTE, "s", "Chunks with a fix, one after the other, that end `gps_lost`.")
 
-    held_driving: float = 30 * MINUTE
-    """s of driving that a confirmed mounting must hold until the device is no longer taken to be loose"""
-    sound_driving: float = 5 * MINUTE
-    """s of driving without any fault of the sensor that end a fault"""
+    held_driving: float = threshold(
+        30 * MINUTE, "s", "Driving that a confirmed mounting must hold to end `device_loose`."
+    )
+    sound_driving: float = threshold(
+        5 * MINUTE, "s", "Driving without any fault of the sensor that ends `sensor_fault`."
+    )
 
     silent: timedelta = timedelta(hours=72)
     """time of day since the last data"""
 
-    clock_back: float = 1.0
-    """s by which a clock runs back"""
+    clock_back: float = threshold(1.0, "s", "A clock that runs back by this much raises `clock_fault`.")
     clock_standing: float = 0.9
     """share of a chunk's samples with the time of the one before"""
-    clock_ahead: float = MINUTE
-    """s that a clock which agreed with the time of day has got ahead of it"""
+    clock_ahead: float = threshold(
+        MINUTE, "s", "A clock farther ahead of the time of day it agreed with raises `clock_fault`."
+    )
     clock_agrees: float = 15.0
     """s, a clock less ahead is sound again"""
     clock_window: float = 10 * MINUTE
@@ -52,8 +56,7 @@ class Limits(NamedTuple):
     """windows in a row with the same rate"""
     clock_late: float = 10.0
     """s later than the best so far: data were kept, their rate says nothing"""
-    clock_sound: float = HOUR
-    """s without anything wrong that end a fault of the clock"""
+    clock_sound: float = threshold(HOUR, "s", "Data without anything wrong that end `clock_fault`.")
     clock_episode: float = MINUTE
     """s without anything wrong after which the next fault counts as another one"""
 
