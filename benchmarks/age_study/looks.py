@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from datetime import timedelta
 from functools import partial
+from itertools import product
 from typing import Any
 
 from pydantic import BaseModel
@@ -13,7 +14,8 @@ from api.routes.installations import read_estimates
 from api.services import paging
 from api.services.context import Context
 from benchmarks.age_study.pair import CHARTED, SENDS
-from benchmarks.age_study.past import NOW, periods
+from benchmarks.age_study.past import HALF_LIFE, NOW, periods
+from storage.models import microseconds
 
 LISTS: tuple[dict[str, Any], ...] = (
     {},
@@ -23,6 +25,9 @@ LISTS: tuple[dict[str, Any], ...] = (
     {"has_open_alert": False},
     {"has_open_alert": True, "stage": "aligning"},
     {"has_open_alert": False, "stage": "settling"},
+    {"alert_kind": "device_silent"},
+    {"alert_severity": "critical"},
+    {"alert_severity": "warning", "stage": "confirmed"},
     {"q": "box"},
     {"q": "box 99"},
     {"q": "nowhere"},
@@ -32,6 +37,7 @@ LISTS: tuple[dict[str, Any], ...] = (
     {"q": "hh-lv 1", "has_open_alert": True},
     {"q": "hh-lv 1", "has_open_alert": False, "stage": "settling"},
 )
+"""each in every order"""
 ALERTS: tuple[dict[str, Any], ...] = (
     {},
     {"state": "open"},
@@ -42,8 +48,13 @@ ALERTS: tuple[dict[str, Any], ...] = (
     {"until": NOW - timedelta(days=180)},
     {"kind": "sensor_fault", "severity": "critical", "state": "open"},
 )
-DEEP = {"a page in the middle": "dev-8", "a page near the end": "dev-fe"}
-"""ids after which pages begin"""
+AGO = [microseconds(NOW - HALF_LIFE * half_lives) for half_lives in (1, 6)]
+DEEP = {
+    "id": ("id dev-8 ", "id dev-fe "),
+    "name": ("name dev-8 box 5", "name dev-8 box 98"),
+    "-last_data_at": (f"-last_data_at dev-8 {AGO[0]}", f"-last_data_at dev-8 {AGO[1]}"),
+}
+"""places in each order after which pages begin, in the middle and near the end"""
 LIMIT = 100
 """items on a page, as by default"""
 Look = Callable[[], str]
@@ -51,10 +62,12 @@ Look = Callable[[], str]
 
 def lists(context: Context) -> Iterator[tuple[str, Look]]:
     """Give the first page of every list of devices, and deep ones."""
-    for filters in LISTS:
-        yield _named("devices", filters), partial(_devices, context, filters, None)
-        for name, after in DEEP.items():
-            yield f"{_named('devices', filters)}, {name}", partial(_devices, context, filters, paging.encode(after))
+    for (order, deep), filters in product(DEEP.items(), LISTS):
+        asked = filters if order == "id" else {"sort": order} | filters
+        name = _named("devices", asked)
+        yield name, partial(_devices, context, asked, None)
+        for place, where in zip(deep, ("in the middle", "near the end"), strict=True):
+            yield f"{name}, a page {where}", partial(_devices, context, asked, paging.encode(place))
 
 
 def alerts(context: Context) -> Iterator[tuple[str, Look]]:
@@ -76,8 +89,7 @@ def _named(what: str, filters: dict[str, Any]) -> str:
 
 
 def _devices(context: Context, filters: dict[str, Any], cursor: str | None) -> str:
-    after = None if cursor is None else paging.decode(cursor)
-    return _text(list_devices(context, after, **filters, limit=LIMIT))
+    return _text(list_devices(context, **filters, cursor=cursor, limit=LIMIT))
 
 
 def _alerts(context: Context, filters: dict[str, Any], cursor: str | None) -> str:

@@ -1,5 +1,6 @@
 """A fleet, and devices with a year behind them, written straight into the tables."""
 
+import math
 import random
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
@@ -36,6 +37,8 @@ OPEN_EACH = 50
 """one device of so many has an open alert"""
 MOUNTS = 12
 """former mountings of an old device"""
+HALF_LIFE = timedelta(hours=6)
+"""half of the devices have sent within the last one, half of the others within the one before..."""
 SCRAMBLE = 7919
 """prime, by which devices have their alerts in another order than they were registered"""
 
@@ -55,8 +58,8 @@ def add_fleet(database: Database, numbers: range) -> None:
 def _device(generator: random.Random, pk: int) -> dict[str, Any]:
     device_id, name = f"dev-{generator.randrange(16**12):012x}", f"Box {pk}"
     vehicle = f"HH-LV {generator.randrange(10_000)}"
-    search = f"{device_id}\n{name}\n{vehicle}".casefold()
-    return {"pk": pk, "id": device_id, "name": name, "vehicle": vehicle, "created_at": NOW, "search": search}
+    keys = {"name_key": name.casefold(), "search": f"{device_id}\n{name}\n{vehicle}".casefold()}
+    return {"pk": pk, "id": device_id, "name": name, "vehicle": vehicle, "created_at": NOW} | keys
 
 
 def _without_pk(row: dict[str, Any]) -> dict[str, Any]:
@@ -66,6 +69,7 @@ def _without_pk(row: dict[str, Any]) -> dict[str, Any]:
 
 def _installation(generator: random.Random, device: dict[str, Any]) -> dict[str, Any]:
     stage = generator.choices(list(STAGES), list(STAGES.values()))[0]
+    last_data_at = None if stage == "waiting" else NOW + HALF_LIFE * math.log2(1 - generator.random())
     status = {"progress": 0.5, "needs": [], "estimate": None, "verification": None}
     return {
         "device_pk": device["pk"],
@@ -74,7 +78,7 @@ def _installation(generator: random.Random, device: dict[str, Any]) -> dict[str,
         "stage": stage,
         "since_at": NOW,
         "status": status,
-        "last_data_at": NOW,
+        "last_data_at": last_data_at,
         "revision": 1,
     }
 

@@ -95,7 +95,13 @@ SEEDS: dict[str, list[bytes]] = {
         b"t,ax,ay,az,fix,speed,course\n-1e308,0,0,0,1,3,90\n1e308,0,0,0,1,3,90\n",
         b"t,ax,ay,az,fix,speed,course\n0,1e308,1e308,1e308,1,1e308,360\n1,0,0,9.8,,,\n",
     ],
-    "cursor": [b"", paging.encode("van-7").encode(), paging.encode(2**62).encode(), b"AA", b"!", "é".encode()],
+    "cursor": [
+        *(b"", b"AA", b"!", "é".encode()),
+        *(
+            paging.encode(key).encode()
+            for key in ("van-7", 2**62, "name van-7 box 7", "-last_data_at van-7 1714979289")
+        ),
+    ],
     "estimator_snapshot": [b"", _state(), _state()[:-1], b"LVLA" + bytes(10)],
     "event_position": [b"", b"0.1", b"123456789012345678.1", b"1.1.1", "١.١".encode(), b"-1.2"],
 }

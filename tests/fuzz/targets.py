@@ -6,11 +6,13 @@ A target takes bytes and returns, or raises: any exception is a finding.
 import json
 from collections.abc import Callable
 from contextlib import suppress
+from typing import get_args
 
 import numpy as np
 
 import core
 from api.formats import FormatError, Limits, ParsedLog, decode, parse
+from api.schemas import DeviceOrder
 from api.services import paging
 from api.services.calibration import last_time
 from api.services.errors import CursorError, UnusableError
@@ -58,8 +60,11 @@ def cursor(data: bytes) -> None:
     text = data.decode(errors="replace")
     with suppress(CursorError):
         inside = paging.decode(text)
-        assert inside.isprintable()
+        assert "\0" not in inside
         assert paging.decode(paging.encode(inside)) == inside
+    for order in get_args(DeviceOrder):
+        with suppress(CursorError):
+            assert paging.decode_place_in(order, text).id in paging.decode(text)
     with suppress(CursorError):
         assert 0 <= paging.decode_number(text) < 2**63
 
