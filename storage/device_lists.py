@@ -15,7 +15,7 @@ from storage.database import ReadSession
 from storage.devices import Device, select
 from storage.models import alert_unresolved, alerts, devices, installations
 
-FEW, MANY = 1000, 20_000
+FEW, MANY = 1000, 40_000
 """devices of a filter: fewer are sorted as fast as they are found, more are not put into a set"""
 _plan_this_list = sa.text(
     "SELECT set_config('plan_cache_mode', 'force_custom_plan', true), set_config('jit', 'off', true),"

@@ -22,7 +22,7 @@ class Device(NamedTuple):
     """`gain` (3x3) and `offset` (3, m/s2)"""
     created_at: datetime
     stage: str
-    status: dict[str, Any]
+    progress: float
     last_data_at: datetime | None
     revision: int
     name_key: str
@@ -54,7 +54,7 @@ select = sa.select(
     devices.c.accelerometer_calibration,
     devices.c.created_at,
     installations.c.stage,
-    installations.c.status,
+    installations.c.status["progress"].as_float(),
     installations.c.last_data_at,
     installations.c.revision,
     devices.c.name_key,

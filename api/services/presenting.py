@@ -150,11 +150,7 @@ def mount(row: mounts.Mount) -> schemas.Mount:
 
 def device(row: devices.Device) -> schemas.Device:
     """Give a device."""
-    shown = row._asdict()
-    return schemas.Device.model_validate(
-        {name: shown[name] for name in schemas.Device.model_fields if name != "progress"}
-        | {"progress": row.status["progress"]}
-    )
+    return schemas.Device.model_validate(row, from_attributes=True)
 
 
 def alert(row: alerts.Alert) -> schemas.Alert:

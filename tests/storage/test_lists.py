@@ -33,7 +33,7 @@ NAMES = (
     "𝐁ox",
 )
 """Also some that are the same without regard to case, longer then, or beyond 16 bits."""
-MODES = ((1000, 20_000), (0, 20_000), (0, 0))
+MODES = ((device_lists.FEW, device_lists.MANY), (0, device_lists.MANY), (0, 0))
 """FEW and MANY so that every filter begins the search, is made a set of, or is looked up"""
 
 

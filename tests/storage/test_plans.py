@@ -137,7 +137,7 @@ def test_what_waits_is_looked_for_among_what_waits(tables: Database) -> None:
         assert any("chunks USING INDEX ix_chunks_waiting" in step for step in steps), steps
 
 
-@pytest.mark.parametrize(("few", "many"), [(1000, 20_000), (0, 20_000), (0, 0)])
+@pytest.mark.parametrize(("few", "many"), [(device_lists.FEW, device_lists.MANY), (0, device_lists.MANY), (0, 0)])
 def test_devices_come_in_the_order_of_an_index(
     tables: Database, few: int, many: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
