@@ -81,7 +81,7 @@ export interface paths {
         };
         /**
          * List Devices
-         * @description List devices in the order of their ids.
+         * @description List devices, by their ids unless another order is asked for; names are compared without regard to case.
          */
         get: operations["list_devices"];
         put?: never;
@@ -557,6 +557,26 @@ export interface paths {
          * @description Count devices by stage and open alerts by kind and severity; a device counts itself alone.
          */
         get: operations["read_summary"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/thresholds": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Thresholds
+         * @description List what the service decides by; it is set where the service is started.
+         */
+        get: operations["list_thresholds"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1106,6 +1126,23 @@ export interface components {
                     [key: string]: number;
                 };
             };
+            /**
+             * Severities
+             * @description Devices with an open alert of each severity.
+             */
+            severities: {
+                [key: string]: number;
+            };
+            /**
+             * Silent
+             * @description Devices with an open alert `device_silent`.
+             */
+            silent: number;
+            /**
+             * Suspect
+             * @description Devices whose mounting is suspect.
+             */
+            suspect: number;
         };
         /**
          * Health
@@ -1632,6 +1669,42 @@ export interface components {
             sensor_mps: number[];
         };
         /**
+         * Threshold
+         * @description One of the numbers the service decides by.
+         */
+        Threshold: {
+            /**
+             * Name
+             * @description As in `core/params.py`, `api/services/rules/limits.py` and the settings.
+             */
+            name: string;
+            /**
+             * Group
+             * @enum {string}
+             */
+            group: "settling" | "verification" | "change" | "alerts" | "upload" | "retention";
+            /**
+             * Value
+             * @description `infinite` is the only text.
+             */
+            value: number | string;
+            /**
+             * Unit
+             * @description Such as `deg`, `s`, `m/s`; empty when it is a mere number.
+             */
+            unit: string;
+            /** Meaning */
+            meaning: string;
+        };
+        /**
+         * Thresholds
+         * @description What the service decides by.
+         */
+        Thresholds: {
+            /** Items */
+            items: components["schemas"]["Threshold"][];
+        };
+        /**
          * Upload
          * @description Answer to an upload.
          */
@@ -2009,10 +2082,16 @@ export interface operations {
                 q?: string | null;
                 stage?: ("waiting" | "aligning" | "settling" | "verifying" | "confirmed") | null;
                 has_open_alert?: boolean | null;
-                /** @description Items on a page. */
-                limit?: number;
+                /** @description With an open alert of this kind. */
+                alert_kind?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault") | null;
+                /** @description With an open alert of this severity; of that kind, if both. */
+                alert_severity?: ("info" | "warning" | "critical") | null;
+                /** @description `-` turns the order round; a device that never sent data comes last either way. */
+                sort?: "id" | "-id" | "name" | "-name" | "last_data_at" | "-last_data_at";
                 /** @description `next_cursor` of the page before. */
                 cursor?: string | null;
+                /** @description Items on a page. */
+                limit?: number;
             };
             header?: never;
             path?: never;
@@ -2988,6 +3067,35 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["FleetSummary"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_thresholds: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Thresholds"];
                 };
             };
             /** @description Problem details (RFC 9457) */
