@@ -1,8 +1,12 @@
-/** Names of what is cached. Everything of one device stands below `device(id)`. */
+import type { AlertKind, DeviceOrder, Severity, Stage } from "./types";
+
+/** Which devices are listed and in which order, named as the API's parameters; "": whichever. */
 export interface DeviceFilter {
   q: string;
-  stage: string;
-  hasOpenAlert: boolean;
+  stage: Stage | "";
+  alert_severity: Severity | "";
+  alert_kind: AlertKind | "";
+  sort: DeviceOrder;
 }
 
 export interface TimeRange {
@@ -10,6 +14,7 @@ export interface TimeRange {
   to: string | null;
 }
 
+/** Names of what is cached. Everything of one device stands below `device(id)`. */
 export const keys = {
   session: ["session"],
   summary: ["summary"],

@@ -1,7 +1,7 @@
 import { type InfiniteData, QueryClient } from "@tanstack/react-query";
 import { beforeEach, describe, expect, it, vi } from "vitest";
 import { apply } from "./apply";
-import { keys } from "./keys";
+import { type DeviceFilter, keys } from "./keys";
 import type { Alert, Device, Installation, Page } from "./types";
 
 const installation = (over: Partial<Installation> = {}): Installation => ({
@@ -58,7 +58,8 @@ const alert = (over: Partial<Alert> = {}): Alert => ({
   ...over,
 });
 
-const LIST = keys.deviceList({ q: "", stage: "", hasOpenAlert: false });
+const EVERYTHING: DeviceFilter = { q: "", stage: "", alert_severity: "", alert_kind: "", sort: "id" };
+const LIST = keys.deviceList(EVERYTHING);
 let client: QueryClient;
 let soon: ReturnType<typeof vi.fn<(key: readonly unknown[]) => void>>;
 
@@ -93,19 +94,6 @@ describe("an installation event", () => {
       revision: 8,
     });
     expect(rows()[0]).toBe(other);
-  });
-
-  it("reads a list of one stage again when the device enters or leaves it", () => {
-    const of = (stage: string) => keys.deviceList({ q: "", stage, hasOpenAlert: false });
-    const page = (...items: Device[]) => ({ pages: [{ items, next_cursor: null }], pageParams: [null] });
-    client.setQueryData(of("settling"), page(device()));
-    client.setQueryData(of("verifying"), page());
-    client.setQueryData(of("waiting"), page());
-    apply(client, { type: "installation", data: told }, soon);
-    expect(soon).toHaveBeenCalledWith(of("settling"));
-    expect(soon).toHaveBeenCalledWith(of("verifying"));
-    expect(soon).not.toHaveBeenCalledWith(of("waiting"));
-    expect(soon).not.toHaveBeenCalledWith(LIST);
   });
 
   it("does not go back when it comes late", () => {

@@ -2,6 +2,7 @@
 import type { QueryClient, QueryKey } from "@tanstack/react-query";
 import { apply, type LiveEvent } from "./apply";
 import { keys } from "./keys";
+import { Pace } from "./pace";
 
 export type LiveStatus = "connecting" | "live" | "reconnecting" | "asleep";
 
@@ -9,8 +10,6 @@ const TYPES = ["installation", "alert", "device"] as const;
 
 /** ms; events are applied together, so that a busy fleet does not make the page flicker. */
 const BATCH = 150;
-/** ms; what is not in an event itself is read again at most this often. */
-const REFETCH = 2000;
 /** ms; the browser reconnects by itself except after a refusal; then wait this long, doubling. */
 const RETRY = { first: 1000, longest: 30_000 };
 /** ms; a page that nobody looks at lets go of its connection after this. */
@@ -106,27 +105,21 @@ class LiveStream {
   }
 }
 
-/** Reads again what was named, each key at most once every `REFETCH` ms and never forgotten. */
+/** Reads again what was named, each at its own pace. */
 class Refetch {
-  private readonly named = new Map<string, QueryKey>();
-  private timer: Timer;
-  private last = 0;
+  private readonly paces = new Map<string, Pace>();
 
   constructor(private readonly client: QueryClient) {}
 
-  soon(key: QueryKey): void {
-    this.named.set(JSON.stringify(key), key);
-    this.timer ??= setTimeout(() => this.now(), Math.max(0, this.last + REFETCH - Date.now()));
+  soon(queryKey: QueryKey): void {
+    const name = JSON.stringify(queryKey);
+    const again = () => this.client.invalidateQueries({ queryKey });
+    const pace = this.paces.get(name) ?? new Pace(again, () => this.paces.delete(name));
+    this.paces.set(name, pace);
+    pace.soon();
   }
 
   stop(): void {
-    clearTimeout(this.timer);
-  }
-
-  private now(): void {
-    this.timer = undefined;
-    this.last = Date.now();
-    for (const queryKey of this.named.values()) this.client.invalidateQueries({ queryKey });
-    this.named.clear();
+    for (const pace of this.paces.values()) pace.stop();
   }
 }

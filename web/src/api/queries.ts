@@ -2,40 +2,18 @@
 import {
   keepPreviousData,
   replaceEqualDeep,
-  useInfiniteQuery,
   useMutation,
   useQuery,
   useQueryClient,
 } from "@tanstack/react-query";
 import { answer, http } from "./http";
-import { type DeviceFilter, keys, type TimeRange } from "./keys";
+import { keys, type TimeRange } from "./keys";
 import { newer } from "./merge";
-import type { DeviceDraft, Installation, Stage } from "./types";
+import type { Installation } from "./types";
 
 const PAGE = 100;
 /** Points of the angle history asked for: about one for every two pixels of a wide chart. */
 const MAX_POINTS = 800;
-
-export function useDevices(filter: DeviceFilter) {
-  return useInfiniteQuery({
-    queryKey: keys.deviceList(filter),
-    queryFn: ({ pageParam }) =>
-      answer(http.GET("/api/v1/devices", { params: { query: listQuery(filter, pageParam) } })),
-    initialPageParam: null as string | null,
-    getNextPageParam: (page) => page.next_cursor,
-    placeholderData: keepPreviousData,
-  });
-}
-
-function listQuery(filter: DeviceFilter, cursor: string | null) {
-  return {
-    limit: PAGE,
-    ...(filter.q && { q: filter.q }),
-    ...(filter.stage && { stage: filter.stage as Stage }),
-    ...(filter.hasOpenAlert && { has_open_alert: true }),
-    ...(cursor && { cursor }),
-  };
-}
 
 export function useSummary() {
   return useQuery({ queryKey: keys.summary, queryFn: () => answer(http.GET("/api/v1/fleet/summary")) });
@@ -88,17 +66,6 @@ export function useDeviceAlerts(id: string, enabled: boolean) {
     queryKey: keys.alerts(id),
     queryFn: () => answer(http.GET("/api/v1/alerts", { params: { query: { device_id: id, limit: PAGE } } })),
     enabled,
-  });
-}
-
-export function useRegister() {
-  const client = useQueryClient();
-  return useMutation({
-    mutationFn: (draft: DeviceDraft) => answer(http.POST("/api/v1/devices", { body: draft })),
-    onSuccess: () => {
-      client.invalidateQueries({ queryKey: keys.devices });
-      client.invalidateQueries({ queryKey: keys.summary });
-    },
   });
 }
 

@@ -1,7 +1,8 @@
 /** Short names for the generated types. */
-import type { components } from "./schema";
+import type { components, operations } from "./schema";
 
 type Schemas = components["schemas"];
+type DeviceQuery = operations["list_devices"]["parameters"]["query"];
 
 export type Alert = Schemas["Alert"];
 export type Device = Schemas["Device"];
@@ -22,6 +23,9 @@ export type Verification = Schemas["Verification"];
 export type Stage = Installation["stage"];
 export type Need = Installation["needs"][number];
 export type Role = SignedIn["role"];
+export type AlertKind = Alert["kind"];
+export type Severity = Alert["severity"];
+export type DeviceOrder = NonNullable<NonNullable<DeviceQuery>["sort"]>;
 
 /** One page of a list. */
 export interface Page<T> {

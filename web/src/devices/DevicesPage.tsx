@@ -1,87 +1,66 @@
-import { Button, TextInput } from "@mantine/core";
-import { useDebouncedValue, useDisclosure, useDocumentTitle } from "@mantine/hooks";
-import { Plus, Search } from "lucide-react";
-import { useState } from "react";
-import type { DeviceFilter } from "../api/keys";
-import { useDevices, useSummary } from "../api/queries";
-import { useMay } from "../api/session";
-import type { Device } from "../api/types";
-import { Failed, Loading } from "../components/States";
-import { DeviceList } from "./DeviceList";
+import { Button } from "@mantine/core";
+import { Plus } from "lucide-react";
+import { lazy, Suspense, useRef, useState } from "react";
+import { useSummary } from "../api/queries";
+import { useTitle } from "../app/title";
+import { t } from "../text";
 import css from "./devices.module.css";
-import { NoDevices } from "./NoDevices";
-import { RegisterDialog } from "./RegisterDialog";
-import { StageFilter } from "./StageFilter";
+import { FirstSteps } from "./FirstSteps";
+import { Fleet } from "./Fleet";
+import { Tiles } from "./Tiles";
+import { useFilter } from "./useFilter";
 
-const EVERYTHING: DeviceFilter = { q: "", stage: "", hasOpenAlert: false };
+const loadAddDevice = () => import("./add/AddDevice");
+const AddDevice = lazy(loadAddDevice);
 
 /** The fleet: who is calibrated, who is under way, who needs a hand. */
 export function DevicesPage() {
-  useDocumentTitle("Devices · Livella");
-  const [filter, setFilter] = useState(EVERYTHING);
-  const [registering, dialog] = useDisclosure(false);
-  const mayRegister = useMay("installer");
-  const summary = useSummary();
+  useTitle(t("devices.title"));
+  const [filter, change] = useFilter();
+  const { data: summary } = useSummary();
+  const adding = useDialog();
+  const hasNone = summary?.devices === 0;
   return (
     <>
       <header className={css.head}>
-        <h1>Devices</h1>
-        {mayRegister && (
-          <Button leftSection={<Plus size={20} aria-hidden />} onClick={dialog.open}>
-            Register a device
-          </Button>
-        )}
-      </header>
-      <div className={css.filters}>
-        <TextInput
-          type="search"
-          aria-label="Search by name, id or vehicle"
-          placeholder="Name, id or vehicle"
-          leftSection={<Search size={18} aria-hidden />}
-          value={filter.q}
-          onChange={(event) => setFilter({ ...filter, q: event.currentTarget.value })}
-        />
-        <StageFilter filter={filter} onChange={setFilter} summary={summary.data} />
-      </div>
-      <Results
-        filter={filter}
-        onClear={() => setFilter(EVERYTHING)}
-        onRegister={mayRegister ? dialog.open : undefined}
-      />
-      <RegisterDialog opened={registering} onClose={dialog.close} />
-    </>
-  );
-}
-
-interface ResultsProps {
-  filter: DeviceFilter;
-  onClear: () => void;
-  onRegister: (() => void) | undefined;
-}
-
-function Results({ filter, onClear, onRegister }: ResultsProps) {
-  const [q] = useDebouncedValue(filter.q.trim(), 250);
-  const wanted = { ...filter, q };
-  const list = useDevices(wanted);
-  if (list.isPending) return <Loading what="the devices" lines={8} />;
-  if (list.isError) return <Failed what="the devices" error={list.error} retry={list.refetch} />;
-  const devices: Device[] = list.data.pages.flatMap((page) => page.items);
-  const filtered = wanted.q !== "" || wanted.stage !== "" || wanted.hasOpenAlert;
-  if (devices.length === 0)
-    return <NoDevices filtered={filtered} onClear={onClear} onRegister={onRegister} />;
-  return (
-    <>
-      <DeviceList devices={devices} stale={list.isPlaceholderData} />
-      {list.hasNextPage && (
+        <h1>{t("devices.title")}</h1>
         <Button
-          mt="md"
-          variant="default"
-          loading={list.isFetchingNextPage}
-          onClick={() => list.fetchNextPage()}
+          leftSection={<Plus size={20} aria-hidden />}
+          onClick={adding.open}
+          onPointerEnter={loadAddDevice}
+          onFocus={loadAddDevice}
         >
-          Show more
+          {t("devices.add")}
         </Button>
+      </header>
+      {hasNone ? (
+        <FirstSteps onAdd={adding.open} />
+      ) : (
+        <>
+          <Tiles filter={filter} onChange={change} summary={summary} />
+          <Fleet filter={filter} onChange={change} summary={summary} />
+        </>
+      )}
+      {adding.opened && (
+        <Suspense>
+          <AddDevice onClose={adding.close} />
+        </Suspense>
       )}
     </>
   );
+}
+
+/** A dialog that begins anew each time, and gives the focus back to what opened it. */
+function useDialog() {
+  const [opened, setOpened] = useState(false);
+  const opener = useRef<Element>(null);
+  const open = () => {
+    opener.current = document.activeElement;
+    setOpened(true);
+  };
+  const close = () => {
+    setOpened(false);
+    if (opener.current instanceof HTMLElement) opener.current.focus();
+  };
+  return { opened, open, close };
 }
