@@ -12,6 +12,7 @@ Role = Literal["device", "installer", "manager", "admin"]
 StageName = Literal["waiting", "aligning", "settling", "verifying", "confirmed"]
 Need = Literal["data", "gps_fix", "motion", "turn", "accelerate_or_brake", "time"]
 MountStatus = Literal["in_force", "suspect", "superseded"]
+CurrentMountStatus = Literal["in_force", "suspect"]
 VerificationState = Literal["idle", "running", "passed", "failed"]
 ChunkState = Literal["applied", "waiting"]
 AlertKind = Literal[

@@ -13,7 +13,7 @@ import sqlalchemy as sa
 
 from storage.database import ReadSession
 from storage.devices import Device, select
-from storage.models import alert_unresolved, alerts, devices, installations
+from storage.models import alert_unresolved, alerts, devices, installations, mount_current, mounts
 
 FEW, MANY = 1000, 40_000
 """devices of a filter: fewer are sorted as fast as they are found, more are not put into a set"""
@@ -34,6 +34,8 @@ class Filter(NamedTuple):
     has_open_alert: bool | None = None
     alert_kind: str | None = None
     alert_severity: str | None = None
+    mount_status: str | None = None
+    """of the current mounting"""
 
 
 class Place(NamedTuple):
@@ -69,6 +71,12 @@ _ORDERS = {
     "last_data_at": Order(installations.c.device_pk, installations.c.device_id, installations.c.last_data_at),
 }
 _of = installations.alias()
+_mounted = devices.alias()
+_current_mounts = (
+    sa.select(mounts.c.device_pk, _mounted.c.id)
+    .join_from(mounts, _mounted, mounts.c.device_pk == _mounted.c.pk)
+    .where(mount_current)
+)
 _unresolved = sa.select(alerts.c.device_pk, alerts.c.device_id).where(alert_unresolved)
 
 
@@ -116,6 +124,8 @@ def _chosen(tx: ReadSession, order: Order, wanted: Filter) -> Iterator[sa.Column
     named = [alerts.c[name] == value for name, value in of_alert.items() if value is not None]
     if named or wanted.has_open_alert:
         yield _belongs(tx, order, _unresolved.where(*named))
+    if wanted.mount_status is not None:
+        yield _belongs(tx, order, _current_mounts.where(mounts.c.status == wanted.mount_status))
     if wanted.stage is not None:
         yield _belongs(tx, order, sa.select(_of.c.device_pk, _of.c.device_id).where(_of.c.stage == wanted.stage))
     if wanted.has_open_alert is False:

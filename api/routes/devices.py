@@ -34,6 +34,9 @@ def list_devices(
     alert_severity: Annotated[
         schemas.Severity | None, Query(description="With an open alert of this severity; of that kind, if both.")
     ] = None,
+    mount_status: Annotated[
+        schemas.CurrentMountStatus | None, Query(description="With a mounting that is so.")
+    ] = None,
     sort: Annotated[
         schemas.DeviceOrder,
         Query(description="`-` turns the order round; a device that never sent data comes last either way."),
@@ -43,7 +46,7 @@ def list_devices(
 ) -> schemas.Page[schemas.Device]:
     """List devices, by their ids unless another order is asked for; names are compared without regard to case."""
     after = None if cursor is None else paging.decode_place_in(sort, cursor)
-    wanted = Filter(q, stage, has_open_alert, alert_kind, alert_severity)
+    wanted = Filter(q, stage, has_open_alert, alert_kind, alert_severity, mount_status)
     with context.database.read() as tx:
         rows = device_lists.page(tx, limit + 1, after, wanted, sort)
     return paging.page(rows, limit, lambda row: paging.place_in(sort, row), presenting.device)

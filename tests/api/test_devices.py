@@ -6,7 +6,7 @@ from storage import alerts, devices, mounts
 from storage.database import Database, WriteSession
 from storage.models import metadata
 from tests.conftest import Clock
-from tests.drives import chunks
+from tests.drives import chunks, remounted
 from tests.service import Api, Device
 
 
@@ -249,3 +249,20 @@ def test_the_summary_counts_mountings_in_doubt(api: Api, database: Database) -> 
         mounts.suspect(tx, pk)
     assert api.get("/fleet/summary")["suspect"] == 1
     assert [device["mount_status"] for device in api.get("/devices")["items"]] == ["in_force", "suspect"]
+
+
+def test_devices_are_listed_by_the_state_of_their_mounting(api: Api) -> None:
+    story = remounted()
+    for name, number in (("held", story.confirmed), ("moved", story.moved), ("mended", story.confirmed_anew)):
+        api.add_device(name).send_all(story.chunks[: number + 1])
+    api.add_device("new")
+
+    def listed(status: str, **more: str) -> list[str]:
+        return ids(api.get("/devices", params={"mount_status": status, **more}))
+
+    assert listed("suspect") == ["moved"]
+    assert api.get("/fleet/summary")["suspect"] == 1
+    assert listed("in_force") == ["held", "mended"]
+    assert listed("in_force", sort="-id") == ["mended", "held"]
+    assert listed("in_force", sort="-last_data_at", q="held") == ["held"]
+    api.call("GET", "/devices", 422, params={"mount_status": "superseded"})

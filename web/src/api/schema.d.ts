@@ -2086,6 +2086,8 @@ export interface operations {
                 alert_kind?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault") | null;
                 /** @description With an open alert of this severity; of that kind, if both. */
                 alert_severity?: ("info" | "warning" | "critical") | null;
+                /** @description With a mounting that is so. */
+                mount_status?: ("in_force" | "suspect") | null;
                 /** @description `-` turns the order round; a device that never sent data comes last either way. */
                 sort?: "id" | "-id" | "name" | "-name" | "last_data_at" | "-last_data_at";
                 /** @description `next_cursor` of the page before. */
