@@ -66,7 +66,8 @@ def alert_of(n: int) -> tuple[str, str] | None:
 def _device(n: int, now: datetime) -> dict[str, Any]:
     texts = {"id": id_of(n), "name": f"Van {n}", "vehicle": f"Fiat Ducato, FL {n:05} AG" if n % 3 else None}
     search = "\n".join(filter(None, texts.values())).casefold()
-    return texts | {"pk": n, "created_at": now - timedelta(days=30), "search": search}
+    keys = {"search": search, "name_key": str(texts["name"]).casefold()}
+    return texts | keys | {"pk": n, "created_at": now - timedelta(days=30)}
 
 
 def _installation(n: int, now: datetime) -> dict[str, Any]:

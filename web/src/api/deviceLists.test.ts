@@ -5,7 +5,14 @@ import { rowsOf } from "./devices";
 import { type DeviceFilter, keys } from "./keys";
 import type { Alert, Device, DeviceChange, Installation, Page, Stage } from "./types";
 
-const EVERYTHING: DeviceFilter = { q: "", stage: "", alert_severity: "", alert_kind: "", sort: "id" };
+const EVERYTHING: DeviceFilter = {
+  q: "",
+  stage: "",
+  alert_severity: "",
+  alert_kind: "",
+  mount_status: "",
+  sort: "id",
+};
 
 const row = (id: string, stage: Stage = "settling"): Device => ({
   id,
@@ -79,6 +86,19 @@ describe("a list of one stage", () => {
     installationInLists(client, told(id, "verifying"), soon);
     expect(readAgain()).toEqual(isRead ? [key] : []);
   });
+});
+
+it("a list of suspect mountings is read again when a mounting becomes suspect, or is confirmed anew", () => {
+  const mount = (status: string) => ({ status }) as Installation["mount"];
+  const suspect = cached({ mount_status: "suspect" }, []);
+  installationInLists(client, { ...told("a", "confirmed"), mount: mount("suspect") }, soon);
+  expect(readAgain()).toEqual([suspect]);
+  soon.mockClear();
+  cached({ mount_status: "suspect" }, [row("a")]);
+  installationInLists(client, { ...told("b", "confirmed"), mount: mount("in_force") }, soon);
+  expect(soon).not.toHaveBeenCalled();
+  installationInLists(client, { ...told("a", "confirmed"), mount: mount("in_force") }, soon);
+  expect(readAgain()).toEqual([suspect]);
 });
 
 describe("a list by the time of the last data", () => {

@@ -47,19 +47,22 @@ export function deviceInLists(client: QueryClient, { device_id, device }: Device
 
 /** Does the device now come into the list, leave it, or take another place in it? */
 function moves({ filter, list, place }: CachedList, told: Installation): boolean {
-  const belongs = filter.stage === "" || filter.stage === told.stage;
+  const belongs =
+    (filter.stage === "" || filter.stage === told.stage) &&
+    (filter.mount_status === "" || filter.mount_status === told.mount?.status);
   if (!place) return belongs && comesIn(list, filter, told.device_id);
   const bySilence = filter.sort === "last_data_at" || filter.sort === "-last_data_at";
   return !belongs || (bySilence && place.device.last_data_at !== told.last_data_at);
 }
 
 /** A device that is not in the list may have come into it, or stand further down than was read. */
-function comesIn({ pages }: DeviceList, { stage, sort }: DeviceFilter, id: string): boolean {
+function comesIn({ pages }: DeviceList, { stage, mount_status, sort }: DeviceFilter, id: string): boolean {
+  const isOfSome = stage !== "" || mount_status !== "";
   const end = pages.at(-1);
   const last = end?.items.at(-1);
-  if (!last || end?.next_cursor === null) return stage !== ""; // all of it was read
+  if (!last || end?.next_cursor === null) return isOfSome; // all of it was read
   if (sort === "-last_data_at") return true; // it has just sent: on top
-  if (stage === "" || sort === "last_data_at") return false;
+  if (!isOfSome || sort === "last_data_at") return false;
   if (sort === "id") return id < last.id;
   return sort === "-id" ? id > last.id : true;
 }

@@ -19,7 +19,10 @@ export function useDevices(filter: DeviceFilter) {
   });
 }
 
-function listQuery({ q, stage, alert_severity, alert_kind, sort }: DeviceFilter, cursor: string | null) {
+function listQuery(
+  { q, stage, alert_severity, alert_kind, mount_status, sort }: DeviceFilter,
+  cursor: string | null,
+) {
   return {
     limit: cursor ? PAGE : FIRST_PAGE,
     sort,
@@ -27,6 +30,7 @@ function listQuery({ q, stage, alert_severity, alert_kind, sort }: DeviceFilter,
     ...(stage && { stage }),
     ...(alert_severity && { alert_severity }),
     ...(alert_kind && { alert_kind }),
+    ...(mount_status && { mount_status }),
     ...(cursor && { cursor }),
   };
 }

@@ -1,4 +1,4 @@
-import type { AlertKind, DeviceOrder, Severity, Stage } from "./types";
+import type { AlertKind, CurrentMountStatus, DeviceOrder, Severity, Stage } from "./types";
 
 /** Which devices are listed and in which order, named as the API's parameters; "": whichever. */
 export interface DeviceFilter {
@@ -6,6 +6,7 @@ export interface DeviceFilter {
   stage: Stage | "";
   alert_severity: Severity | "";
   alert_kind: AlertKind | "";
+  mount_status: CurrentMountStatus | "";
   sort: DeviceOrder;
 }
 

@@ -58,7 +58,14 @@ const alert = (over: Partial<Alert> = {}): Alert => ({
   ...over,
 });
 
-const EVERYTHING: DeviceFilter = { q: "", stage: "", alert_severity: "", alert_kind: "", sort: "id" };
+const EVERYTHING: DeviceFilter = {
+  q: "",
+  stage: "",
+  alert_severity: "",
+  alert_kind: "",
+  mount_status: "",
+  sort: "id",
+};
 const LIST = keys.deviceList(EVERYTHING);
 let client: QueryClient;
 let soon: ReturnType<typeof vi.fn<(key: readonly unknown[]) => void>>;

@@ -2,7 +2,7 @@
 import type { components, operations } from "./schema";
 
 type Schemas = components["schemas"];
-type DeviceQuery = operations["list_devices"]["parameters"]["query"];
+type DeviceQuery = NonNullable<operations["list_devices"]["parameters"]["query"]>;
 
 export type Alert = Schemas["Alert"];
 export type Device = Schemas["Device"];
@@ -25,7 +25,8 @@ export type Need = Installation["needs"][number];
 export type Role = SignedIn["role"];
 export type AlertKind = Alert["kind"];
 export type Severity = Alert["severity"];
-export type DeviceOrder = NonNullable<NonNullable<DeviceQuery>["sort"]>;
+export type DeviceOrder = NonNullable<DeviceQuery["sort"]>;
+export type CurrentMountStatus = NonNullable<DeviceQuery["mount_status"]>;
 
 /** One page of a list. */
 export interface Page<T> {

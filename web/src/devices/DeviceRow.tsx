@@ -62,7 +62,7 @@ function Alerts({ device: { open_alerts, mount_status } }: { device: Device }) {
   if (open_alerts === 0 && !isSuspect) return <span className={css.unknown}>{t("common.none")}</span>;
   return (
     <>
-      {isSuspect && <Pill {...SUSPECT_LOOK}>{t("devices.suspect")}</Pill>}
+      {isSuspect && <Pill {...SUSPECT_LOOK}>{t("devices.is_suspect")}</Pill>}
       {open_alerts > 0 && (
         <Pill {...SEVERITY.warning}>
           <span aria-hidden>{whole(open_alerts)}</span>

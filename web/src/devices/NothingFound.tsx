@@ -5,7 +5,7 @@ import { Empty } from "../components/States";
 import { stageWord } from "../lib/stages";
 import { t } from "../text";
 import css from "./devices.module.css";
-import { EVERYTHING, type Restriction, restrictions, type SILENT } from "./filter";
+import { EVERYTHING, type Restriction, restrictions } from "./filter";
 import type { Change } from "./useFilter";
 
 /** Which restrictions leave nothing over; each can be taken away by itself. */
@@ -44,6 +44,6 @@ function valueWord(filter: DeviceFilter, name: Restriction): string {
   if (name === "alert_severity" && filter.alert_severity) {
     return t(`devices.severity.${filter.alert_severity}`);
   }
-  if (name === "alert_kind") return t(`devices.kind.${filter.alert_kind as typeof SILENT}`);
-  return filter.q.trim();
+  if (name === "alert_kind") return t("devices.silent");
+  return name === "mount_status" ? t("devices.is_suspect") : filter.q.trim();
 }

@@ -5,7 +5,7 @@ import type { FleetSummary } from "../api/types";
 import { whole } from "../lib/format";
 import { STAGE, STAGES, stageWord, type Tone } from "../lib/stages";
 import { t } from "../text";
-import { countOf, MOVED, type Narrowing, SEVERITIES, SILENT } from "./filter";
+import { countOf, type Narrowing, SEVERITIES, SILENT, SUSPECT, writeFilter } from "./filter";
 import { SEVERITY, SILENT_LOOK, SUSPECT_LOOK } from "./look";
 import css from "./tiles.module.css";
 import type { Change } from "./useFilter";
@@ -16,9 +16,11 @@ interface TilesProps {
   summary: FleetSummary | undefined;
 }
 
+/** No tile narrows the list: what is searched, and the order, stay. */
+const ALL: Required<Narrowing> = { stage: "", alert_severity: "", alert_kind: "", mount_status: "" };
+
 /** The fleet in counts, and each count a filter: press "Verifying 3" to see those three. */
 export function Tiles({ filter, onChange, summary }: TilesProps) {
-  const all = { stage: "", alert_severity: "", alert_kind: "" } as const;
   const tile = (narrowing: Narrowing, word: string, look: { icon: LucideIcon; tone: Tone }) => (
     <NarrowingTile key={word} {...{ narrowing, word, filter, onChange, summary, ...look }} />
   );
@@ -29,8 +31,8 @@ export function Tiles({ filter, onChange, summary }: TilesProps) {
           word={t("devices.all")}
           icon={LayoutGrid}
           count={summary?.devices}
-          pressed={!filter.stage && !filter.alert_severity && !filter.alert_kind}
-          onPress={() => onChange(all)}
+          pressed={writeFilter({ ...filter, ...ALL }) === writeFilter(filter)}
+          onPress={() => onChange(ALL)}
         />
         {STAGES.map((stage) => tile({ stage }, stageWord(stage), STAGE[stage]))}
       </Strip>
@@ -39,7 +41,7 @@ export function Tiles({ filter, onChange, summary }: TilesProps) {
           tile({ alert_severity }, t(`devices.severity.${alert_severity}`), SEVERITY[alert_severity]),
         )}
         {tile({ alert_kind: SILENT }, t("devices.silent"), SILENT_LOOK)}
-        {tile({ alert_kind: MOVED }, t("devices.suspect"), SUSPECT_LOOK)}
+        {tile({ mount_status: SUSPECT }, t("devices.suspect"), SUSPECT_LOOK)}
       </Strip>
     </div>
   );

@@ -13,13 +13,14 @@ describe("the address", () => {
     ["stage=waiting", { stage: "waiting" }],
     ["alert_severity=critical", { alert_severity: "critical" }],
     ["alert_kind=device_silent", { alert_kind: "device_silent" }],
+    ["mount_status=suspect", { mount_status: "suspect" }],
     ["sort=-last_data_at", { sort: "-last_data_at" }],
     [
-      "q=a&stage=confirmed&alert_kind=orientation_changed&sort=name",
+      "q=a&stage=confirmed&alert_kind=device_silent&sort=name",
       {
         q: "a",
         stage: "confirmed",
-        alert_kind: "orientation_changed",
+        alert_kind: "device_silent",
         sort: "name",
       },
     ],
@@ -28,10 +29,14 @@ describe("the address", () => {
     expect(writeFilter(filter(over))).toBe(search);
   });
 
-  it.each(["stage=sleeping", "sort=colour", "alert_kind=constructor", "stage=&sort=", "page=3"])(
-    "that nobody wrote is left out: %s",
-    (search) => expect(readFilter(search)).toEqual(EVERYTHING),
-  );
+  it.each([
+    "stage=sleeping",
+    "sort=colour",
+    "alert_kind=constructor",
+    "mount_status=superseded",
+    "stage=&sort=",
+    "page=3",
+  ])("that nobody wrote is left out: %s", (search) => expect(readFilter(search)).toEqual(EVERYTHING));
 
   it("keeps what is being typed as it is, blanks at its end too", () => {
     expect(readFilter(writeFilter(filter({ q: "van " }))).q).toBe("van ");
@@ -61,7 +66,7 @@ describe("how many are expected", () => {
     [{ alert_severity: "warning" }, 2],
     [{ alert_severity: "info" }, 0],
     [{ alert_kind: "device_silent" }, 2],
-    [{ alert_kind: "orientation_changed" }, 5],
+    [{ mount_status: "suspect" }, 5],
     [{ q: "van" }, undefined],
     [{ stage: "waiting", alert_severity: "warning" }, undefined],
   ])("%o: %s", (over, count) => expect(expected(filter(over), summary)).toBe(count));

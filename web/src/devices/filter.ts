@@ -1,15 +1,22 @@
 /** What the list is narrowed to and how it is sorted, as it stands in the page's address: "?stage=waiting&sort=-name". */
 import type { DeviceFilter } from "../api/keys";
-import type { AlertKind, DeviceOrder, FleetSummary, Severity } from "../api/types";
+import type { AlertKind, CurrentMountStatus, DeviceOrder, FleetSummary, Severity } from "../api/types";
 import { STAGES } from "../lib/stages";
 
-export const EVERYTHING: DeviceFilter = { q: "", stage: "", alert_severity: "", alert_kind: "", sort: "id" };
+export const EVERYTHING: DeviceFilter = {
+  q: "",
+  stage: "",
+  alert_severity: "",
+  alert_kind: "",
+  mount_status: "",
+  sort: "id",
+};
 
 export const SEVERITIES = ["critical", "warning", "info"] as const satisfies readonly Severity[];
 
-/** Kinds of alerts that have a tile of their own. */
+/** What else has a tile of its own: one kind of alert, and mountings in doubt. */
 export const SILENT = "device_silent" satisfies AlertKind;
-export const MOVED = "orientation_changed" satisfies AlertKind;
+export const SUSPECT = "suspect" satisfies CurrentMountStatus;
 
 export const ORDERS = [
   "id",
@@ -21,7 +28,7 @@ export const ORDERS = [
 ] as const satisfies readonly DeviceOrder[];
 
 /** What narrows the list; everything but the order. */
-export const RESTRICTIONS = ["q", "stage", "alert_severity", "alert_kind"] as const;
+export const RESTRICTIONS = ["q", "stage", "alert_severity", "alert_kind", "mount_status"] as const;
 export type Restriction = (typeof RESTRICTIONS)[number];
 
 /** Whatever is not understood is left out: an address may have been typed, or be of another version. */
@@ -33,7 +40,8 @@ export function readFilter(search: string): DeviceFilter {
     q: given.get("q") ?? "",
     stage: oneOf(STAGES, "stage") ?? "",
     alert_severity: oneOf(SEVERITIES, "alert_severity") ?? "",
-    alert_kind: oneOf([SILENT, MOVED], "alert_kind") ?? "",
+    alert_kind: oneOf([SILENT], "alert_kind") ?? "",
+    mount_status: oneOf([SUSPECT], "mount_status") ?? "",
     sort: oneOf(ORDERS, "sort") ?? EVERYTHING.sort,
   };
 }

@@ -108,7 +108,7 @@ function IdField({ scanned, start, onScan, value, onChange, error }: IdFieldProp
     <div className={css.id}>
       <TextInput
         label={t("devices.form.id")}
-        description={t("devices.form.id_about")}
+        aria-describedby="id-about"
         pattern="[A-Za-z0-9][A-Za-z0-9._:\-]{0,63}"
         autoCapitalize="off"
         spellCheck={false}
@@ -126,6 +126,7 @@ function IdField({ scanned, start, onScan, value, onChange, error }: IdFieldProp
       >
         {t("devices.form.scan")}
       </Button>
+      <p id="id-about">{t("devices.form.id_about")}</p>
       <p role="status">
         {isScanned && t("devices.form.scanned", { id: value })}
         {isScanned && scanned.isProductCode && ` ${t("devices.form.product_code")}`}

@@ -33,7 +33,7 @@ export function Scanner({ onFound, onType }: ScannerProps) {
       <CameraWords state={state} />
       {unusable && <Explanation scanned={unusable} />}
       <Photo onCode={take} />
-      <Group justify="flex-end">
+      <Group grow preventGrowOverflow={false}>
         {!isLive && state !== "insecure" && (
           <Button variant="default" leftSection={<RotateCw size={18} aria-hidden />} onClick={again}>
             {t("devices.scan.again")}

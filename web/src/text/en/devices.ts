@@ -17,6 +17,7 @@ export const devices = {
   },
   silent: "Silent",
   suspect: "Suspect mounting",
+  is_suspect: "Suspect",
   column: {
     name: "Name",
     id: "Id",
@@ -47,12 +48,9 @@ export const devices = {
     stage: "Stage: {{value}}",
     alert_severity: "Open alert: {{value}}",
     alert_kind: "Open alert: {{value}}",
+    mount_status: "Mounting: {{value}}",
     remove: "Take away: {{filter}}",
     clear: "Show all devices",
-  },
-  kind: {
-    device_silent: "silent",
-    orientation_changed: "mounting suspect",
   },
   first: {
     title: "No devices yet",

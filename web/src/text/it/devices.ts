@@ -19,6 +19,7 @@ export const devices: Translated<typeof en.devices> = {
   },
   silent: "Silenziosi",
   suspect: "Montaggio sospetto",
+  is_suspect: "Sospetto",
   column: {
     name: "Nome",
     id: "Identificativo",
@@ -49,12 +50,9 @@ export const devices: Translated<typeof en.devices> = {
     stage: "Fase: {{value}}",
     alert_severity: "Avviso aperto: {{value}}",
     alert_kind: "Avviso aperto: {{value}}",
+    mount_status: "Montaggio: {{value}}",
     remove: "Togli: {{filter}}",
     clear: "Mostra tutti i dispositivi",
-  },
-  kind: {
-    device_silent: "silenzioso",
-    orientation_changed: "montaggio sospetto",
   },
   first: {
     title: "Ancora nessun dispositivo",
