@@ -6,6 +6,8 @@ from typing import Any
 
 import sqlalchemy as sa
 
+import core
+from api.services import presenting
 from storage.database import Database
 from storage.migrate import upgrade
 from storage.models import alerts, devices, installations, mounts, sessions
@@ -21,6 +23,7 @@ ALERTS = (
 )
 """kinds and severities, in turn"""
 SILENT_DAYS = 5
+STATUS = presenting.status(core.status(core.DEFAULT, core.initial_state(core.DEFAULT)))
 
 
 def make(data: Path, number: int) -> None:
@@ -79,7 +82,7 @@ def _installation(n: int, now: datetime) -> dict[str, Any]:
         "device_id": id_of(n),
         "stage": stage,
         "since_at": now - timedelta(days=1),
-        "status": {"progress": STAGES[stage], "needs": [], "estimate": None, "verification": None},
+        "status": STATUS | {"progress": STAGES[stage]},
         "last_data_at": None if stage == "waiting" and not silent else now - quiet,
         "revision": 1,
     }

@@ -13,6 +13,7 @@ import { LiveProvider } from "./Live";
 import { NotFound } from "./NotFound";
 import { Shell } from "./Shell";
 import { SignIn } from "./SignIn";
+import { useScroll } from "./scroll";
 import { theme } from "./theme";
 
 /** Each page comes when it is first opened, so that the first one is there soon. */
@@ -75,6 +76,7 @@ function Gate() {
 
 /** A device's key sees its own device and nothing else. */
 function Pages({ session }: { session: SignedIn }) {
+  useScroll();
   const own = session.device_id;
   const home = own === null ? "/devices" : `/devices/${encodeURIComponent(own)}`;
   const page = (needed: Role, Page: ComponentType) =>

@@ -46,10 +46,10 @@ export function DeviceTable({ list, rows, total, sort, onChange }: DeviceTablePr
           {...handlers}
           style={{ height: virtualizer.getTotalSize() }}
         >
-          {items.map(({ index, key, start }) => (
+          {items.map(({ index, start }) => (
             <div
-              key={key}
-              ref={virtualizer.measureElement}
+              key={rows[index]?.id ?? index}
+              ref={isWide ? undefined : virtualizer.measureElement}
               className={css.place}
               data-index={index}
               {...roles.row(index)}

@@ -1,4 +1,9 @@
-import { defaultRangeExtractor, type Range, useWindowVirtualizer } from "@tanstack/react-virtual";
+import {
+  defaultKeyExtractor,
+  defaultRangeExtractor,
+  type Range,
+  useWindowVirtualizer,
+} from "@tanstack/react-virtual";
 import {
   type FocusEvent,
   type KeyboardEvent,
@@ -6,16 +11,17 @@ import {
   useCallback,
   useEffect,
   useLayoutEffect,
+  useMemo,
   useRef,
   useState,
 } from "react";
 import type { useDevices } from "../api/devices";
 import type { Device } from "../api/types";
 
-/** px, before a row has been measured */
-const HEIGHT = { row: 57, card: 172 };
+/** rem; of a row as in table.module.css, of a card before it has been measured */
+const HEIGHT = { row: 3.5, card: 10.75 };
 /** rows kept ready above and below the screen */
-const OVERSCAN = 12;
+const OVERSCAN = 8;
 /** rows to be there before one scrolls to them */
 const AHEAD = 400;
 
@@ -23,6 +29,7 @@ const AHEAD = 400;
 export function useRows(rows: readonly Device[], count: number, isWide: boolean) {
   const body = useRef<HTMLDivElement>(null);
   const [focused, setFocused] = useState<number | null>(null);
+  /** Heights are remembered by device; those of rows are all the same. */
   const keyOf = useCallback((index: number) => rows[index]?.id ?? index, [rows]);
   /** The row with the focus stays in the document when it is scrolled away, or the focus would be lost. */
   const withFocused = useCallback(
@@ -33,12 +40,13 @@ export function useRows(rows: readonly Device[], count: number, isWide: boolean)
     },
     [focused],
   );
+  const height = useMemo(() => (isWide ? HEIGHT.row : HEIGHT.card) * rem(), [isWide]);
   const virtualizer = useWindowVirtualizer({
     count,
-    estimateSize: () => (isWide ? HEIGHT.row : HEIGHT.card),
+    estimateSize: () => height,
     overscan: OVERSCAN,
     scrollMargin: useTop(body),
-    getItemKey: keyOf,
+    getItemKey: isWide ? defaultKeyExtractor : keyOf,
     rangeExtractor: withFocused,
   });
   const goTo = useGoTo(body, (index) => virtualizer.scrollToIndex(index, { align: "center" }));
@@ -46,16 +54,23 @@ export function useRows(rows: readonly Device[], count: number, isWide: boolean)
   const screenful = Math.max(1, (virtualizer.range?.endIndex ?? 1) - first - 2);
   const handlers = {
     onFocus: (event: FocusEvent) => setFocused(indexOf(event.target)),
-    onBlur: () => setFocused(null),
+    onBlur: () => {
+      setFocused(null);
+      goTo.cancel();
+    },
     onKeyDown: (event: KeyboardEvent) => {
       const from = indexOf(event.target);
       const step = stepOf(event, screenful);
       if (from === null || step === null) return;
       event.preventDefault();
-      goTo(Math.min(Math.max(from + step, 0), count - 1));
+      goTo.go(Math.min(Math.max(from + step, 0), count - 1));
     },
   };
   return { body, virtualizer, items: virtualizer.getVirtualItems(), tabStop: focused ?? first, handlers };
+}
+
+function rem(): number {
+  return Number.parseFloat(getComputedStyle(document.documentElement).fontSize);
 }
 
 function indexOf(target: EventTarget): number | null {
@@ -89,9 +104,14 @@ function useGoTo(body: RefObject<HTMLDivElement | null>, scrollTo: (index: numbe
   useLayoutEffect(() => {
     if (wanted.current !== null) focus();
   });
-  return (index: number) => {
-    wanted.current = index;
-    if (!focus()) scrollTo(index);
+  return {
+    go: (index: number) => {
+      wanted.current = index;
+      if (!focus()) scrollTo(index);
+    },
+    cancel: () => {
+      wanted.current = null;
+    },
   };
 }
 
@@ -99,9 +119,15 @@ function useGoTo(body: RefObject<HTMLDivElement | null>, scrollTo: (index: numbe
 function useTop(body: RefObject<HTMLDivElement | null>): number {
   const [top, setTop] = useState(0);
   useLayoutEffect(() => {
-    const box = body.current?.getBoundingClientRect();
-    if (box) setTop(Math.round(box.top + window.scrollY));
-  });
+    const measure = () => {
+      const box = body.current?.getBoundingClientRect();
+      if (box) setTop(Math.round(box.top + window.scrollY));
+    };
+    measure();
+    const observer = new ResizeObserver(measure);
+    observer.observe(document.body);
+    return () => observer.disconnect();
+  }, [body]);
   return top;
 }
 
