@@ -16,10 +16,10 @@ STAGES = {"waiting": 0.0, "aligning": 0.2, "settling": 0.6, "verifying": 0.9, "c
 ALERTED_EACH = 50
 """one device of so many has an open alert"""
 ALERTS = (
-    ("orientation_changed", "critical"),
+    ("orientation_changed", "warning"),
     ("device_silent", "warning"),
-    ("gps_lost", "warning"),
-    ("calibration_stalled", "info"),
+    ("device_loose", "critical"),
+    ("gps_lost", "info"),
 )
 """kinds and severities, in turn"""
 SILENT_DAYS = 5

@@ -93,6 +93,14 @@ def test_every_answer_has_the_security_headers(api: Api, client: TestClient) -> 
     assert client.get("/api/v1/session").headers["cache-control"] == "no-store"
 
 
+def test_the_page_may_use_the_camera_and_nothing_else(client: TestClient) -> None:
+    policy = client.get("/").headers["permissions-policy"].split(", ")
+    allowed = dict(rule.split("=") for rule in policy)
+    assert allowed.pop("camera") == "(self)"
+    assert set(allowed) == {"microphone", "geolocation", "payment"}
+    assert set(allowed.values()) == {"()"}
+
+
 # ---------------------------------------------------------------- the page
 
 

@@ -43,13 +43,12 @@ def test_a_wrong_key_is_told_and_the_right_one_opens(visitor: Visitor, api: Api)
 def test_a_device_is_registered_on_a_phone_and_its_key_shown_once(installer: Visitor, api: Api) -> None:
     page = installer.page
     installer.sign_in()
-    page.get_by_role("button", name="Register a device").first.click()
+    page.get_by_role("button", name="Add a device").first.click()
     dialog = page.get_by_role("dialog")
     dialog.get_by_role("textbox", name="Name").fill("Van 12")
     dialog.get_by_role("textbox", name="Vehicle").fill("Fiat Ducato")
-    dialog.get_by_role("button", name="More details").click()
     dialog.get_by_role("textbox", name="Device id").fill("van-12")
-    dialog.get_by_role("button", name="Register", exact=True).click()
+    dialog.get_by_role("button", name="Add", exact=True).click()
     installer.see("This key is shown only now")
     key, command = dialog.locator("code").all_text_contents()
     assert f"--device van-12 \\\n  --key {key}" in command
@@ -65,12 +64,11 @@ def test_a_name_that_is_taken_is_explained_in_the_dialog(visitor: Visitor, api: 
     visitor.tolerated += ("409 (Conflict)",)
     visitor.sign_in()
     page = visitor.page
-    page.get_by_role("button", name="Register a device").click()
+    page.get_by_role("button", name="Add a device").click()
     dialog = page.get_by_role("dialog")
     dialog.get_by_role("textbox", name="Name").fill("Van 12")
-    dialog.get_by_role("button", name="More details").click()
     dialog.get_by_role("textbox", name="Device id").fill("van-12")
-    dialog.get_by_role("button", name="Register", exact=True).click()
+    dialog.get_by_role("button", name="Add", exact=True).click()
     expect(dialog.get_by_role("alert")).to_contain_text("van-12")
 
 
@@ -79,7 +77,7 @@ def test_the_list_is_live_searched_and_filtered(visitor: Visitor, api: Api) -> N
     api.add_device("bus-2", name="Bus 2")
     visitor.sign_in()
     page = visitor.page
-    rows = page.get_by_role("list", name="Devices").get_by_role("listitem")
+    rows = page.get_by_role("table", name="Devices").get_by_role("row").filter(has=page.get_by_role("link"))
     expect(rows).to_have_count(2)
     moving.send_all(drives.plain().chunks[:3])
     expect(rows.filter(has_text="Van 1")).not_to_contain_text("Waiting")

@@ -19,7 +19,7 @@ interface AddedProps {
 export function Added({ registered: { device, key }, onDone }: AddedProps) {
   const top = useRef<HTMLDivElement>(null);
   // Not on a button: a second press of Enter would close the dialog, and the key would be lost.
-  useEffect(() => top.current?.focus(), []);
+  useEffect(() => top.current?.focus({ preventScroll: true }), []);
   return (
     <Stack ref={top} tabIndex={-1} className={css.top}>
       <Notice tone="warn" icon={KeyRound} title={t("devices.done.once")}>

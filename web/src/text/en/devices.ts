@@ -125,7 +125,7 @@ export const devices = {
     title: "The device is added",
     once: "This key is shown only now",
     once_about:
-      "Put it into the device, or keep it safe. If it is lost, make a new one; the old one then ends.",
+      "Put it into the device, or keep it safe. It cannot be shown again: if it is lost, the device needs a new one.",
     key: "Key of {{name}}",
     qr: "QR code of the key of {{name}}",
     qr_about: "For devices and tools that scan it.",

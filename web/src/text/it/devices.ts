@@ -129,7 +129,7 @@ export const devices: Translated<typeof en.devices> = {
     title: "Il dispositivo è aggiunto",
     once: "Questa chiave viene mostrata solo ora",
     once_about:
-      "Inserirla nel dispositivo o conservarla al sicuro. Se va persa, crearne una nuova: la vecchia allora non vale più.",
+      "Inserirla nel dispositivo o conservarla al sicuro. Non può essere mostrata di nuovo: se va persa, al dispositivo ne serve una nuova.",
     key: "Chiave di {{name}}",
     qr: "Codice QR della chiave di {{name}}",
     qr_about: "Per dispositivi e strumenti che lo leggono.",
