@@ -96,7 +96,7 @@ class Settings(BaseSettings):
         30.0, gt=0, description="Minutes of data without a GPS fix that raise `gps_lost`."
     )
     alert_silent_hours: float = Field(
-        72.0, ge=0.1, le=87600, description="Hours without data that raise `device_silent`."
+        72.0, ge=0.005, le=87600, description="Hours without data that raise `device_silent`; at least 0.005 (18 s)."
     )
     alert_reopen_minutes: float = Field(
         60.0,

@@ -10,6 +10,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
+from core import quaternion
 from core.samples import ALTITUDE, COURSE, LATITUDE, LONGITUDE, SPEED, VERTICAL_SPEED, Samples
 from core.simulation_motion import GRAVITY, smooth_noise
 from core.simulation_sensors import EARTH_RADIUS
@@ -17,6 +18,8 @@ from core.simulation_sensors import EARTH_RADIUS
 Floats = NDArray[np.float64]
 Span = tuple[float, float]
 """(start, end) s"""
+Rotation = tuple[float, float, float]
+"""rotation vector, rad"""
 
 BURST, BURST_EVERY = (5.0, 30.0), 45.0
 """s, how long multipath lasts, and mean time until it begins again"""
@@ -26,8 +29,6 @@ METRES_PER_SPEED = 5.0
 """m by which position and altitude jump per m/s of multipath"""
 JUMP_SPEED, JUMP_DISTANCE = (10.0, 30.0), (50.0, 500.0)
 """m/s, m"""
-DRIFT_PERIOD = 4 * 3600.0
-"""s of a temperature cycle"""
 GYRO_PER_BIAS = radians(0.3) / (20e-3 * GRAVITY)
 """rad/s of gyroscope drift per m/s2 of accelerometer drift"""
 LONGEST_GAP = 20
@@ -40,6 +41,10 @@ class Disturbances:
 
     bias_drift: float = 0.0
     """m/s2, amplitude by which the accelerometer bias follows the temperature, and the gyroscope's in proportion"""
+    drift_period: float = 4 * 3600.0
+    """s of a temperature cycle"""
+    knocks: tuple[tuple[float, Rotation], ...] = ()
+    """(s, rotation in sensor axes) when the device is turned, at once; the truth of the drive says nothing of it"""
     signs: tuple[float, float, float] = (1.0, 1.0, 1.0)
     """factor of each accelerometer axis: (-1, -1, -1) or (1, 1, -1) make the sensor left-handed"""
     gyro_signs: tuple[float, float, float] = (1.0, 1.0, 1.0)
@@ -85,7 +90,7 @@ def disturb(samples: Samples, faults: Disturbances, rng: np.random.Generator) ->
     if faults == Disturbances():
         return samples
     drifting, reflecting, jumping, logging = rng.spawn(4)
-    f_s, w_s = _drifted(samples, faults, drifting)
+    f_s, w_s = _knocked(samples.t, *_drifted(samples, faults, drifting), faults.knocks)
     f_s, w_s = f_s * np.array(faults.signs), w_s * np.array(faults.gyro_signs)
     if faults.full_scale is not None:
         f_s = np.clip(f_s, -faults.full_scale, faults.full_scale)
@@ -99,9 +104,18 @@ def disturb(samples: Samples, faults: Disturbances, rng: np.random.Generator) ->
 
 def _drifted(samples: Samples, faults: Disturbances, rng: np.random.Generator) -> tuple[Floats, Floats]:
     phase = rng.uniform(-np.pi, np.pi, (2, 3))
-    angle = 2 * np.pi * samples.t[:, None] / DRIFT_PERIOD
+    angle = 2 * np.pi * samples.t[:, None] / faults.drift_period
     acceleration, turning = (faults.bias_drift * (np.sin(angle + p) - np.sin(p)) for p in phase)
     return samples.f_s + acceleration, samples.w_s + GYRO_PER_BIAS * turning
+
+
+def _knocked(t: Floats, f_s: Floats, w_s: Floats, knocks: tuple[tuple[float, Rotation], ...]) -> tuple[Floats, Floats]:
+    """Give the readings of a device that was turned at some moments."""
+    for when, turn in knocks:
+        later = (t >= when)[:, None]
+        further = quaternion.matrix(quaternion.from_rotation_vector(turn))  # f_s = R f_s' of the device turned further
+        f_s, w_s = np.where(later, f_s @ further, f_s), np.where(later, w_s @ further, w_s)
+    return f_s, w_s
 
 
 def _disturbed_fixes(

@@ -14,20 +14,34 @@ from rich.console import Console
 from rich.panel import Panel
 
 from api.app import create_app
-from api.commands.demo_fleet import FLEET, Player
+from api.commands.demo_fleet import FLEET
+from api.commands.demo_player import play
 from api.services import access
 from api.settings import Settings
 
 HOST = "127.0.0.1"
 GRACE = 5
 """s a request may still take after Ctrl-C"""
+SILENT = 18.0
+"""s without data after which a device is silent: nobody waits three days for it here"""
+
+ABOUT = f"""\
+{len(FLEET)} simulated vehicles are on the road; within two minutes they show every stage and every kind of alert.
+A device that sends nothing for {SILENT:.0f} s counts as silent here; otherwise that takes three days.
+Ctrl-C ends it all; nothing is kept."""
 
 
 def run(port: int) -> None:
     """Serve on this machine only, play the fleet over HTTP, and leave nothing behind."""
     key = access.new_key()
     with _ended_by_signals(), TemporaryDirectory(prefix="livella-demo-") as directory:
-        settings = Settings(host=HOST, port=port, data_dir=Path(directory), admin_key=SecretStr(key))
+        settings = Settings(
+            host=HOST,
+            port=port,
+            data_dir=Path(directory),
+            admin_key=SecretStr(key),
+            alert_silent_hours=SILENT / 3600,
+        )
         server = uvicorn.Server(
             uvicorn.Config(
                 create_app(settings),
@@ -63,13 +77,8 @@ def _conduct(server: str, key: str, end: threading.Event) -> None:
     if not _ready(server, end):
         return
     address = f"Open   [bold]{server}[/]\nKey    [bold]{key}[/]"
-    text = f"{address}\n\n{len(FLEET)} simulated vehicles are on the road. Ctrl-C ends it all."
-    console.print(Panel(text, title="Livella", expand=False), soft_wrap=True)
-    threads = [threading.Thread(target=Player(vehicle, server, key, end).run) for vehicle in FLEET]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    console.print(Panel(f"{address}\n\n{ABOUT}", title="Livella", expand=False), soft_wrap=True)
+    play(server, key, end)
 
 
 def _ready(server: str, end: threading.Event) -> bool:

@@ -1,138 +1,81 @@
-"""The simulated fleet of `livella demo`: a few vehicles in various states, driven on and on."""
+"""The fleet of `livella demo`: together its vehicles show every stage and every kind of alert, now and later.
 
-import threading
-import time
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from itertools import count, pairwise
+What a device recorded before the demo it sends at once, as after a time without network. From then on everything goes
+at the speed of time: a clock a little faster than that would be a fault.
+"""
 
-import numpy as np
+from dataclasses import dataclass
 
-from api.commands.device import Device, RefusedError, Service, UnavailableError, register
-from api.formats import native_csv
-from api.formats.writer import write_native_csv
-from core import Samples, quaternion
-from core.quaternion import Floats
-from core.simulation import Scenario, simulate
+from api.commands.demo_trips import Trip
+from core.simulation_faults import Disturbances
 
-SHORTEST_CHUNK = 5.0
-"""s of log time in a chunk, at least"""
-POST_EVERY = 1.0
-"""s between two chunks of a vehicle that is played fast"""
-FOREVER = 1e9
-PATIENCE = 20.0
+MINUTE, HOUR = 60.0, 3600.0
 
 
 @dataclass(frozen=True)
 class Vehicle:
-    """One vehicle, and how it is played."""
+    """A vehicle, and what it does."""
 
     device_id: str
     name: str
     kind: str
     seed: int
-    route: str = "city"
-    drive: float = 900.0
-    """s of log time from power-up to power-off"""
-    speed: float = 10.0
-    """s of log time played in a second"""
-    head_start: float = 0.0
-    """s of log time sent at once at the beginning"""
-    no_fix: bool = False
-    turned_at: float | None = None
-    """s into each drive at which somebody turns the device"""
-    refitted: bool = False
-    """the calibration is restarted before each drive, as an installer does after refitting the device"""
+    """of its device, its mounting and its roads"""
+    shows: tuple[str, ...]
+    """stages and alerts it is here for"""
+    past: Trip | None
+    """recorded before the demo"""
+    now: Trip | None
+    """driven again and again; None = the device sends nothing more"""
+    fitted_at: float | None = None
+    """s until a fitter has fitted the device and sets off; after each trip it is fitted anew, at another angle"""
 
+
+SHORT = Trip("city", 20 * MINUTE)
+YARD = Trip("parked", 30 * MINUTE)
+UNDERGROUND = Trip("parked", 40 * MINUTE, no_fix_from=0.0)
+ROUND = Trip("city", 200.0)
+"""of a fitter: until the mounting is confirmed"""
+JAM = Trip("crawl", 75 * MINUTE)
+
+HIT = Trip("city", 16.5 * MINUTE, knocked_at=(15 * MINUTE,))
+SLIPPED = Trip("city", 28.5 * MINUTE, knocked_at=(400.0, 1000.0, 1600.0))
+SLIPPING = Trip("city", 30 * MINUTE, knocked_at=(400.0, 1000.0, 1600.0))
+STUCK = Trip("city", 6 * MINUTE, faults=Disturbances(stuck=(0, 240.0)))
+DRIFT = Disturbances(bias_drift=0.6, drift_period=90.0)
+DRIFTED, DRIFTING = Trip("city", 14 * MINUTE, faults=DRIFT), Trip("city", 20 * MINUTE, faults=DRIFT)
+LOSING_GPS = Trip("city", 50 * MINUTE, no_fix_from=15 * MINUTE)
+WITHOUT_GPS = Trip("city", 30 * MINUTE, no_fix_from=0.0)
+SET_BACK = Trip("city", 10 * MINUTE, set_back=(9.5 * MINUTE, 90.0))
+
+SLEEPS = Disturbances(clock_steps=((15 * MINUTE, 2 * HOUR), (40 * MINUTE, 3 * HOUR)))
+"""An hour of driving in three trips of a day: the device sleeps meanwhile, its clock goes on."""
+DAY_IN_TOWN = Trip("city", HOUR, faults=SLEEPS)
+DAY_IN_HILLS = Trip("hills", HOUR, faults=SLEEPS)
+DAY_ON_MOTORWAY = Trip("motorway", HOUR, faults=SLEEPS)
+TOWN, HILLS, MOTORWAY = (Trip(route, 30 * MINUTE) for route in ("city", "hills", "motorway"))
 
 FLEET = (
-    Vehicle("van-101", "Van in the yard", "Fiat Ducato", 1, route="parked"),
-    Vehicle("van-102", "Van in the underground car park", "Ford Transit", 2, no_fix=True),
-    Vehicle("car-201", "Car that has just set off", "Skoda Octavia", 3, drive=90.0, speed=1.0, refitted=True),
-    Vehicle("truck-301", "Lorry on the motorway", "Iveco Daily", 4, route="motorway", speed=4.0, refitted=True),
-    Vehicle("car-202", "Car in town", "VW Golf", 5, head_start=400.0),
-    Vehicle("car-203", "Car whose device gets turned", "Renault Clio", 6, speed=5.0, head_start=300.0, turned_at=400.0),
+    # Fallen silent: first, because the silence has to last.
+    Vehicle("car-201", "Car with a flat battery", "Citroën Berlingo", 1, ("device_silent",), SHORT, None),
+    Vehicle("camper-401", "Camper laid up for the winter", "Fiat Ducato", 2, ("device_silent",), SHORT, None),
+    # Standing.
+    Vehicle("van-101", "Van underground", "Ford Transit", 3, ("waiting", "gps_lost"), UNDERGROUND, UNDERGROUND),
+    Vehicle("van-102", "Van in the yard", "Fiat Ducato", 4, ("aligning",), None, YARD),
+    # With fitters, one after the other, so that one of them is always in the drive test.
+    Vehicle("car-202", "Pool car with a fitter", "Skoda Octavia", 12, ("settling", "verifying"), None, ROUND, 0.0),
+    Vehicle("car-203", "Second pool car with a fitter", "VW Golf", 8, ("waiting",), None, ROUND, 60.0),
+    Vehicle("car-204", "Third pool car with a fitter", "Renault Clio", 5, ("waiting",), None, ROUND, 130.0),
+    # In trouble.
+    Vehicle("car-205", "Car hit in a car park", "VW Passat", 3, ("orientation_changed",), HIT, YARD),
+    Vehicle("van-103", "Van with a loose device", "Peugeot Boxer", 3, ("device_loose",), SLIPPED, SLIPPING),
+    Vehicle("car-206", "Car with a stuck sensor", "Fiat Panda", 6, ("sensor_fault",), STUCK, STUCK),
+    Vehicle("van-104", "Van with a drifting sensor", "Opel Vivaro", 5, ("verification_failing",), DRIFTED, DRIFTING),
+    Vehicle("van-105", "Van in a jam", "Mercedes Sprinter", 2, ("settling", "calibration_stalled"), JAM, JAM),
+    Vehicle("car-207", "Taxi without an antenna", "Toyota Prius", 4, ("gps_lost",), LOSING_GPS, WITHOUT_GPS),
+    Vehicle("lorry-301", "Lorry whose clock is set back", "MAN TGM", 5, ("clock_fault",), SET_BACK, SET_BACK),
+    # As they should be.
+    Vehicle("lorry-302", "Lorry on the motorway", "Iveco S-Way", 7, ("confirmed",), DAY_ON_MOTORWAY, MOTORWAY),
+    Vehicle("van-106", "Parcel van in town", "Renault Master", 8, ("confirmed",), DAY_IN_TOWN, TOWN),
+    Vehicle("van-107", "Van in the hills", "Dacia Dokker", 9, ("confirmed",), DAY_IN_HILLS, HILLS),
 )
-
-
-@dataclass
-class Player:
-    """Plays one vehicle until `end` is set."""
-
-    vehicle: Vehicle
-    server: str
-    key: str
-    """of an installer or above"""
-    end: threading.Event
-    drives: Iterator[Samples] = field(init=False)
-
-    def __post_init__(self) -> None:
-        """Prepare the drives."""
-        self.drives = drives(self.vehicle)
-
-    def run(self) -> None:
-        """Register the device, then drive on and on."""
-        with self._service(self.key) as service:
-            key = register(service, self.vehicle.device_id, self.vehicle.name, self.vehicle.kind)
-            with self._service(key or self.key) as own:
-                for number in count(1):
-                    self._drive(service, own, number)
-                    if self.end.is_set():
-                        return
-
-    def _service(self, key: str) -> Service:
-        return Service(self.server, key, lambda _: None, PATIENCE, self.end)
-
-    def _drive(self, service: Service, own: Service, number: int) -> None:
-        """Drive from power-up to power-off; one that fails is given up, the next one follows."""
-        vehicle = self.vehicle
-        try:
-            if vehicle.refitted and number > 1:
-                service.request("POST", f"devices/{vehicle.device_id}/installation/restart")
-            device = Device(own, vehicle.device_id, f"drive-{number}", native_csv.MEDIA_TYPE)
-            self._play(device, next(self.drives), vehicle.head_start if number == 1 else 0.0)
-        except (RefusedError, UnavailableError):
-            self.end.wait(POST_EVERY)  # somebody removed the device on the page, or the service is ending
-
-    def _play(self, device: Device, samples: Samples, head_start: float) -> None:
-        """Send the drive, each chunk when it is due."""
-        begin = time.monotonic() - head_start / self.vehicle.speed
-        for piece in pieces(samples, max(SHORTEST_CHUNK, POST_EVERY * self.vehicle.speed)):
-            due = begin + float(piece.t[-1]) / self.vehicle.speed
-            if self.end.wait(max(0.0, due - time.monotonic())):
-                return
-            device.send(write_native_csv(piece))
-
-
-def drives(vehicle: Vehicle) -> Iterator[Samples]:
-    """Give one drive after the other; the device stays mounted as it was at the end of the one before."""
-    rng = np.random.default_rng(vehicle.seed)
-    mount = quaternion.random(rng)
-    while True:
-        after = _turned(mount, rng) if vehicle.turned_at else mount
-        scenario = Scenario(
-            route=vehicle.route,
-            seconds=vehicle.drive,
-            seed=int(rng.integers(2**31)),
-            mount=mount,
-            remount=(vehicle.turned_at, after) if vehicle.turned_at else None,
-            imu_rate=100.0,
-            outages=((0.0, FOREVER),) if vehicle.no_fix else (),
-        )
-        yield simulate(scenario).samples
-        mount = after
-
-
-def pieces(samples: Samples, seconds: float) -> Iterator[Samples]:
-    """Cut a drive into pieces of so many seconds."""
-    bounds = np.searchsorted(samples.t, np.arange(0.0, samples.t[-1] + seconds, seconds)).tolist()
-    for start, stop in pairwise(bounds):
-        yield samples.slice(start, stop)
-
-
-def _turned(mount: Floats, rng: np.random.Generator) -> Floats:
-    """Give the mounting after a knock of 20 to 50 degrees about any axis."""
-    axis = rng.normal(size=3)
-    angle = np.radians(rng.uniform(20.0, 50.0))
-    knock = quaternion.from_rotation_vector(angle * axis / np.linalg.norm(axis))
-    return quaternion.normalise(quaternion.multiply(knock, mount))

@@ -2,14 +2,16 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import cycle
 
 import numpy as np
 import pytest
 
-from core import DEFAULT, Event, EventKind, Fault, Outcome, Samples, State, advance, begin_session
+from core import DEFAULT, Event, EventKind, Fault, Outcome, State, advance, begin_session
 from core.quaternion import angle_between, from_rotation_vector, multiply, random
 from core.simulation import Drive, Scenario, simulate
-from tests.core.drives import Floats, run, turned
+from core.simulation_faults import Disturbances
+from tests.core.drives import Floats, run
 
 pytestmark = pytest.mark.compiled
 
@@ -144,18 +146,18 @@ def test_a_device_turned_while_switched_off_is_found() -> None:
     assert angle_between(outcome.status.mount.quaternion, after) < 4 * DEGREE
 
 
-def turned_again_and_again(samples: Samples, times: tuple[float, ...]) -> Samples:
-    """Turn the device to and fro by 25 deg, about an axis of its own, at the times."""
-    other = turned(samples, from_rotation_vector(25 * DEGREE * np.array([0.48, -0.6, 0.64])))
-    away = (np.searchsorted(times, samples.t) % 2 == 1)[:, None]
-    return replace(samples, f_s=np.where(away, other.f_s, samples.f_s), w_s=np.where(away, other.w_s, samples.w_s))
+def to_and_fro(*times: float) -> Disturbances:
+    """Turn the device by 25 deg, about an axis of its own, and back, at the times."""
+    x, y, z = 25 * DEGREE * np.array([0.48, -0.6, 0.64])
+    turns = ((x, y, z), (-x, -y, -z))
+    return Disturbances(knocks=tuple(zip(times, cycle(turns), strict=False)))
 
 
 @pytest.mark.parametrize("sensor", ["mems", "tmd2"])
 def test_a_device_that_keeps_turning_is_loose(sensor: str) -> None:
     times = (400.0, 1000.0, 1600.0)
-    drive = simulate(replace(TOWN, seconds=2400.0, seed=14, sensor=sensor))
-    _, outcome = run(turned_again_and_again(drive.samples, times))
+    drive = simulate(replace(TOWN, seconds=2400.0, seed=14, sensor=sensor, disturbances=to_and_fro(*times)))
+    _, outcome = run(drive.samples)
     assert len(changes(outcome)) == len(times)
     loose = [event for event in outcome.events if event.fault is Fault.DEVICE_LOOSE]
     assert len(loose) == 1
@@ -171,8 +173,8 @@ def test_a_device_that_keeps_turning_is_loose(sensor: str) -> None:
 
 @pytest.mark.parametrize("sensor", ["mems", "tmd2"])
 def test_two_turns_do_not_make_a_device_loose(sensor: str) -> None:
-    drive = simulate(replace(TOWN, seconds=1800.0, seed=15, sensor=sensor))
-    _, outcome = run(turned_again_and_again(drive.samples, (400.0, 1000.0)))
+    drive = simulate(replace(TOWN, seconds=1800.0, seed=15, sensor=sensor, disturbances=to_and_fro(400.0, 1000.0)))
+    _, outcome = run(drive.samples)
     assert len(changes(outcome)) == 2
     assert Fault.DEVICE_LOOSE not in [event.fault for event in outcome.events]
     assert outcome.status.mount is not None

@@ -59,6 +59,7 @@ def test_drives_without_faults_stay_the_drives_they_were(scenario: Scenario, gol
     ("faults", "untouched"),
     [
         ({"bias_drift": 0.1}, ("t", "fix_row", "fix")),
+        ({"knocks": ((20, (0.0, 0.0, 0.5)),)}, ("t", "fix_row", "fix")),
         ({"signs": (-1, -1, -1)}, ("t", "w_s", "fix_row", "fix")),
         ({"gyro_signs": (-1, 1, 1)}, ("t", "f_s", "fix_row", "fix")),
         ({"full_scale": 8.0}, ("t", "w_s", "fix_row", "fix")),
@@ -156,6 +157,27 @@ def test_the_bias_drifts_through_a_night() -> None:
     f_s = simulate(night).samples.f_s
     first, last = f_s[:200].mean(axis=0), f_s[5000:5200].mean(axis=0)
     assert 0.02 < np.linalg.norm(last - first) < 0.4
+
+
+def test_a_bias_can_drift_quickly() -> None:
+    still = replace(QUIET, route="parked", seconds=120)
+    drift = with_faults(still, bias_drift=0.5, drift_period=30.0).f_s - simulate(still).samples.f_s
+    assert np.all(np.ptp(drift, axis=0) == pytest.approx(1.0, abs=0.01))
+    period = int(30 * TOWN.imu_rate)
+    np.testing.assert_allclose(drift[:-period], drift[period:], atol=1e-9)
+
+
+def test_a_device_that_was_knocked_reads_as_one_mounted_so() -> None:
+    first, second = np.array([0.3, -0.2, 0.5]), np.array([-0.1, 0.4, 0.2])
+    knocked = with_faults(QUIET, knocks=((20.0, tuple(first)), (40.0, tuple(second))))
+    mount = simulate(QUIET).truth.q_vs
+    for start, turn in ((0.0, None), (20.0, first), (40.0, second)):
+        if turn is not None:
+            mount = quaternion.multiply(mount, quaternion.from_rotation_vector(turn))
+        mounted = simulate(replace(QUIET, mount=mount)).samples
+        now = (knocked.t >= start) & (knocked.t < start + 20.0)
+        np.testing.assert_allclose(knocked.f_s[now], mounted.f_s[now], atol=1e-9)
+        np.testing.assert_allclose(knocked.w_s[now], mounted.w_s[now], atol=1e-9)
 
 
 def attitudes(drive: Drive) -> tuple[Floats, Floats, Floats]:

@@ -4,7 +4,7 @@ from datetime import datetime, timedelta
 from typing import NamedTuple
 
 from api.services import findings
-from api.services.rules.limits import HOUR, Limits
+from api.services.rules.limits import HOUR, MINUTE, Limits
 from api.services.rules.seen import Over, Rule, Seen, Verdict
 from storage.alerts import Finding
 
@@ -29,19 +29,23 @@ def step(memory: Memory, seen: Seen, limits: Limits) -> tuple[Memory, Verdict]:
 
 def finding(last_data_at: datetime, now: datetime, silent: timedelta) -> Finding:
     """Give the alert of a device that has fallen silent."""
-    hours = (now - last_data_at).total_seconds() / HOUR
+    seconds = (now - last_data_at).total_seconds()
     known = {
         "at": findings.text(now),
         "since": findings.text(last_data_at),
-        "seen": round(hours, 3),
+        "seen": round(seconds / HOUR, 3),
         "threshold": silent.total_seconds() / HOUR,
         "unit": "h",
     }
-    return Finding(KIND, "warning", f"The device has sent nothing for {_long(hours)}. {REMEDY}", findings.data(known))
+    return Finding(KIND, "warning", f"The device has sent nothing for {_long(seconds)}. {REMEDY}", findings.data(known))
 
 
-def _long(hours: float) -> str:
-    return f"{hours / 24:.0f} days" if hours >= 48 else f"{hours:.0f} hours"
+def _long(seconds: float) -> str:
+    """Say a duration in the largest unit of which there are two."""
+    for unit, name in ((24 * HOUR, "days"), (HOUR, "hours"), (MINUTE, "minutes")):
+        if seconds >= 2 * unit:
+            return f"{seconds / unit:.0f} {name}"
+    return f"{seconds:.0f} seconds"
 
 
 RULE = Rule(KIND, Memory(), step, of_mounting=False, open=Memory(told=True))
