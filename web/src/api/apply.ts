@@ -1,8 +1,9 @@
 /** Changes the cache as the events of the live stream say. */
 import type { QueryClient, QueryKey } from "@tanstack/react-query";
-import { alertInLists, deviceInLists, installationInLists } from "./deviceLists";
+import { applyAlert } from "./applyAlert";
+import { deviceInLists, installationInLists } from "./deviceLists";
 import { keys } from "./keys";
-import { mountChanged, newer, withAlert, withInstallation } from "./merge";
+import { mountChanged, newer, withInstallation } from "./merge";
 import type { Alert, Device, DeviceChange, Installation, Page } from "./types";
 
 export type LiveEvent =
@@ -28,14 +29,6 @@ function applyInstallation(client: QueryClient, told: Installation, soon: Soon):
   client.setQueryData<Device>(keys.device(id), (device) => device && withInstallation(device, told));
   if (known) soon(keys.estimates(id));
   installationInLists(client, told, soon);
-  soon(keys.summary);
-}
-
-function applyAlert(client: QueryClient, told: Alert, soon: Soon): void {
-  const key = keys.alerts(told.device_id);
-  client.setQueryData<Page<Alert>>(key, (page) => page && withAlert(page, told));
-  soon(keys.installation(told.device_id));
-  alertInLists(client, told, soon);
   soon(keys.summary);
 }
 

@@ -1,4 +1,4 @@
-import type { AlertKind, CurrentMountStatus, DeviceOrder, Severity, Stage } from "./types";
+import type { AlertKind, AlertState, CurrentMountStatus, DeviceOrder, Severity, Stage } from "./types";
 
 /** Which devices are listed and in which order, named as the API's parameters; "": whichever. */
 export interface DeviceFilter {
@@ -15,6 +15,22 @@ export interface TimeRange {
   to: string | null;
 }
 
+export interface AlertFilter {
+  state: AlertState | "unresolved" | "all";
+  kind: AlertKind | "";
+  severity: Severity | "";
+  deviceId: string;
+  /** days of the reader's calendar, such as 2025-11-22, both included; "": no limit */
+  from: string;
+  to: string;
+}
+
+export interface AuditFilter {
+  actor: string;
+  action: string;
+  target: string;
+}
+
 /** Names of what is cached. Everything of one device stands below `device(id)`. */
 export const keys = {
   session: ["session"],
@@ -27,4 +43,14 @@ export const keys = {
   estimatesIn: (id: string, range: TimeRange) => ["device", id, "estimates", range],
   mounts: (id: string) => ["device", id, "mounts"],
   alerts: (id: string) => ["device", id, "alerts"],
+  alertLists: ["alerts"],
+  alertList: (filter: AlertFilter) => ["alerts", filter],
+  alert: (id: number) => ["alert", id],
+  unread: ["unread"],
+  accessKeys: ["access-keys"],
+  webhooks: ["webhooks"],
+  deliveries: (id: number) => ["deliveries", id],
+  thresholds: ["thresholds"],
+  audit: (filter: AuditFilter) => ["audit", filter],
+  version: ["version"],
 } as const;

@@ -30,7 +30,12 @@ export function replaced<T extends { id: string | number }>(page: Page<T>, item:
 export function withAlert(page: Page<Alert>, told: Alert): Page<Alert> {
   const known = page.items.find(({ id }) => id === told.id);
   if (!known) return { ...page, items: [told, ...page.items] };
-  return Date.parse(known.updated_at) > Date.parse(told.updated_at) ? page : replaced(page, told);
+  return later(known, told) === known ? page : replaced(page, told);
+}
+
+/** An event may overtake an answer: of two states of an alert, the later one. */
+export function later(known: Alert, told: Alert): Alert {
+  return Date.parse(known.updated_at) > Date.parse(told.updated_at) ? known : told;
 }
 
 /**
