@@ -60,7 +60,7 @@ function part(axis: (typeof AXES)[number], degrees: number): string {
 function lasted(about: "calibration_stalled" | "gps_lost", data: Data): string {
   const seconds = number(data.seen);
   if (seconds === null) return t(`alerts.finding.${about}_unknown`);
-  return t(`alerts.finding.${about}`, { time: duration(seconds) });
+  return t(`alerts.finding.${about}`, { time: duration(60 * Math.round(seconds / 60)) });
 }
 
 function failed(data: Data): string {

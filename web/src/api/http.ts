@@ -31,6 +31,15 @@ export async function answer<T>(
   return data as T;
 }
 
+/** The description of the API, as far as the page reads it. */
+export async function openApi(): Promise<{ info: { version: string } }> {
+  const response = await fetch("/openapi.json").catch(() => {
+    throw new Problem(0, "The service does not answer.");
+  });
+  if (!response.ok) throw problem(response.status, null);
+  return response.json();
+}
+
 function problem(status: number, body: unknown): Problem {
   const detail = text(body, "detail") ?? text(body, "title");
   return new Problem(status, detail ?? `The service answered with status ${status}.`, fields(body));

@@ -46,6 +46,7 @@ export const keys = {
   alertLists: ["alerts"],
   alertList: (filter: AlertFilter) => ["alerts", filter],
   alert: (id: number) => ["alert", id],
+  deviceChoices: (q: string) => ["device-choices", q],
   unread: ["unread"],
   accessKeys: ["access-keys"],
   webhooks: ["webhooks"],

@@ -22,11 +22,11 @@ export type Reception = Schemas["Reception"];
 export type RegisteredDevice = Schemas["RegisteredDevice"];
 export type SignedIn = Schemas["SignedIn"];
 export type SpeedTrace = Schemas["SpeedTrace"];
+export type Threshold = Schemas["Threshold"];
 export type Verification = Schemas["Verification"];
 export type Webhook = Schemas["Webhook"];
 export type WebhookDelivery = Schemas["WebhookDelivery"];
 export type WebhookDraft = Schemas["WebhookDraft"];
-export type WebhookPatch = Schemas["WebhookPatch"];
 export type WebhookTest = Schemas["WebhookTest"];
 
 export type Stage = Installation["stage"];

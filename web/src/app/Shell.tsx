@@ -14,6 +14,7 @@ import { Link, useRoute } from "wouter";
 import { useSummary } from "../api/queries";
 import { atLeast, useSignOut } from "../api/session";
 import type { Role, SignedIn } from "../api/types";
+import { Said } from "../components/Said";
 import { Trouble } from "../components/States";
 import { whole } from "../lib/format";
 import { t } from "../text";
@@ -46,6 +47,7 @@ export function Shell({ session, children }: { session: SignedIn; children: Reac
       <main id="main" className={css.main} tabIndex={-1}>
         {children}
       </main>
+      <Said />
     </>
   );
 }

@@ -1,0 +1,64 @@
+import { useThresholds } from "../api/service";
+import type { Threshold } from "../api/types";
+import { Failed, Loading } from "../components/States";
+import { significant } from "../lib/format";
+import { t } from "../text";
+import css from "./settings.module.css";
+
+const GROUPS = ["settling", "verification", "change", "alerts", "upload", "retention"] as const;
+
+/** What the service decides by, to be read. */
+export function ThresholdsPage() {
+  const thresholds = useThresholds();
+  return (
+    <>
+      <p>{t("settings.thresholds.about")}</p>
+      {thresholds.isPending && <Loading what={t("settings.thresholds.the_thresholds")} lines={8} />}
+      {thresholds.isError && (
+        <Failed
+          what={t("settings.thresholds.the_thresholds")}
+          error={thresholds.error}
+          retry={thresholds.refetch}
+        />
+      )}
+      {thresholds.data?.length === 0 && <p className={css.quiet}>{t("settings.thresholds.none")}</p>}
+      {thresholds.data && GROUPS.map((group) => <Group key={group} name={group} of={thresholds.data} />)}
+    </>
+  );
+}
+
+function Group({ name, of }: { name: Threshold["group"]; of: readonly Threshold[] }) {
+  const items = of.filter(({ group }) => group === name);
+  if (items.length === 0) return null;
+  return (
+    <div className="card">
+      <table className={css.table}>
+        <caption>{t(`settings.thresholds.group.${name}`)}</caption>
+        <thead>
+          <tr>
+            <th scope="col">{t("settings.thresholds.name")}</th>
+            <th scope="col">{t("settings.thresholds.value")}</th>
+            <th scope="col">{t("settings.thresholds.meaning")}</th>
+          </tr>
+        </thead>
+        <tbody>
+          {items.map((item) => (
+            <tr key={item.name}>
+              <th scope="row">
+                <code>{item.name}</code>
+              </th>
+              <td>{valueText(item)}</td>
+              <td lang="en">{item.meaning}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+function valueText({ value, unit }: Threshold): string {
+  if (value === "infinite") return t("settings.thresholds.infinite");
+  const text = typeof value === "number" ? significant(value, 6) : value;
+  return unit ? `${text} ${unit}` : text;
+}
