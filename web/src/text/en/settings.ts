@@ -122,7 +122,7 @@ export const settings = {
     attempts_one: "{{number}} attempt",
     attempts_other: "{{number}} attempts",
     answer: "answer {{status}}",
-    took: "{{duration}} ms",
+    took: "took {{duration}} ms",
     next: "next attempt <when />",
     last: "last attempt <when />",
     again: "Send the given up ones again",

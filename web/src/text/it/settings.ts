@@ -125,7 +125,7 @@ export const settings: Translated<typeof en.settings> = {
     attempts_one: "{{number}} tentativo",
     attempts_other: "{{number}} tentativi",
     answer: "risposta {{status}}",
-    took: "{{duration}} ms",
+    took: "durata {{duration}} ms",
     next: "prossimo tentativo: <when />",
     last: "ultimo tentativo <when />",
     again: "Invia di nuovo quelle abbandonate",
