@@ -15,14 +15,15 @@ from api.services import findings, publishing
 from api.services.rules import Limits, Seen, calibration_stalled, clock_fault, device_silent, gps_lost
 from api.services.rules import verification_failing as failing
 from core import EventKind, Evidence, Fault, Stage
+from core.quaternion import Floats
 from storage import alerts
 from storage import models as tables
 from storage.alerts import Finding
 from storage.database import Database
 
 LIMITS = Limits()
-LOOKS = np.arange(12) * 5.0
-EVIDENCE = Evidence(400.0 + LOOKS, np.maximum(0.0, LOOKS - 25.0) * 3.0, 60.0)
+LOOKS: Floats = 5.0 * np.arange(12.0)
+EVIDENCE = Evidence(400.0 + LOOKS, np.maximum(0.0, 3.0 * LOOKS - 75.0), 60.0)
 
 
 class Raised(NamedTuple):
@@ -46,9 +47,9 @@ def every_kind(now: datetime) -> dict[Raised, Finding]:
         ("van-3", "axes are a mirror image", "Gli assi del sensore sono speculari", _fault(now, Fault.LEFT_HANDED)),
         ("van-4", "An axis of the sensor is stuck", "Un asse del sensore è bloccato", _fault(now, Fault.STUCK_AXIS)),
         ("van-5", "Readings rest at the end", "Le letture restano al limite", _fault(now, Fault.SATURATED)),
-        ("van-1", "Not confirmed after 30 min of driving", "Non confermato dopo 30 min di guida", stalled),
+        ("van-1", "Not confirmed after 31 min of driving", "Non confermato dopo 31 min di guida", stalled),
         ("van-1", "4 drive tests in a row have failed", "4 prove su strada di fila non superate", failed),
-        ("van-1", "No GPS fix in 30 min of data", "Nessuna posizione GPS in 30 min di dati", without),
+        ("van-1", "No GPS fix in 31 min of data", "Nessuna posizione GPS in 31 min di dati", without),
         ("van-1", "Nothing has come since", "Il dispositivo tace, ultimi dati:", silent),
         ("van-1", "The clock has run back by 40 s", "L’orologio è tornato indietro di 40 s", _back(now)),
         ("van-2", "The clock stands still", "L’orologio è fermo", _standing(now)),
@@ -123,7 +124,7 @@ def _ahead(now: datetime) -> object:
 
 
 def _fast(now: datetime) -> object:
-    begun = now.timestamp() - 600.0
+    begun = now.timestamp() - 600.5
     memory = clock_fault.Memory(session=1, window_r=begun, least=begun, rates=(1.1, 1.1))
     return clock_fault.step(memory, _seen(now, t_last=660.0), LIMITS)[1]
 
