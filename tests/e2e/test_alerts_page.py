@@ -78,6 +78,7 @@ def test_a_moved_device_is_told_acknowledged_and_over_without_reload(visitor: Vi
     expect(shown.get_by_role("link", name="Van 1")).to_have_attribute("href", "/devices/van-1")
     shown.get_by_text("Details").click()
     expect(shown).to_contain_text("Drive on: the new mounting is found")
+    expect(shown.get_by_role("img")).to_have_count(0 if found["data"]["evidence"] is None else 1)
     shown.get_by_role("button", name="Acknowledge").click()
     settle(visitor, "Acknowledge", "The driver moved it; I call him.")
     expect(visitor.page.get_by_role("status").filter(has_text="1 alert acknowledged.")).to_be_visible()

@@ -1,4 +1,5 @@
-import { Button, Checkbox } from "@mantine/core";
+import { ActionIcon, Button, Checkbox } from "@mantine/core";
+import { X } from "lucide-react";
 import type { Verb } from "../api/alerts";
 import type { Alert } from "../api/types";
 import { whole } from "../lib/format";
@@ -37,9 +38,9 @@ export function SelectionBar({ chosen, onChange, onSettle }: SelectionBarProps) 
   return (
     <section className={css.bar} aria-label={t("alerts.select.bar")}>
       <strong>{t("alerts.select.count", { count, number })}</strong>
-      <Button variant="subtle" onClick={() => onChange(new Set())}>
-        {t("alerts.select.none")}
-      </Button>
+      <ActionIcon aria-label={t("alerts.select.none")} color="gray" onClick={() => onChange(new Set())}>
+        <X size={20} aria-hidden />
+      </ActionIcon>
       <div className={css.barActions}>
         <Action verb="acknowledge" chosen={chosen} onSettle={onSettle} />
         <Action verb="resolve" chosen={chosen} onSettle={onSettle} />

@@ -4,8 +4,8 @@ import { answer, http } from "./http";
 import { keys } from "./keys";
 import type { Page, Webhook, WebhookDelivery, WebhookDraft } from "./types";
 
-/** ms between two looks at deliveries that wait */
-const LOOK_AGAIN = 3000;
+/** ms between two looks; the stream does not tell of webhooks and their deliveries */
+const LOOK_AGAIN = 4000;
 
 const of = (webhook_id: number) => ({ params: { path: { webhook_id } } });
 
@@ -17,10 +17,10 @@ export function useWebhooks() {
     initialPageParam: null as string | null,
     getNextPageParam: (page) => page.next_cursor,
     select: ({ pages }) => pages.flatMap((page) => page.items),
+    refetchInterval: LOOK_AGAIN,
   });
 }
 
-/** The stream does not tell of deliveries: while some wait they are read again now and then. */
 export function useDeliveries(id: number) {
   return useInfiniteQuery({
     queryKey: keys.deliveries(id),
@@ -28,17 +28,13 @@ export function useDeliveries(id: number) {
     initialPageParam: null as string | null,
     getNextPageParam: (page) => page.next_cursor,
     select: ({ pages }) => pages.flatMap((page) => page.items),
-    refetchInterval: ({ state }) => (state.data?.pages.some(waits) ? LOOK_AGAIN : false),
+    refetchInterval: LOOK_AGAIN,
   });
 }
 
 function readDeliveries(webhook_id: number, cursor: string | null): Promise<Page<WebhookDelivery>> {
   const params = { path: { webhook_id }, query: { limit: 20, ...(cursor && { cursor }) } };
   return answer(http.GET("/api/v1/webhooks/{webhook_id}/deliveries", { params }));
-}
-
-function waits({ items }: Page<WebhookDelivery>): boolean {
-  return items.some(({ state }) => state === "pending");
 }
 
 export interface SavedWebhook {

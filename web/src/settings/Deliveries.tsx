@@ -31,7 +31,7 @@ function Log({ id }: { id: number }) {
   if (list.data.length === 0) return <p className={css.quiet}>{t("settings.deliveries.none")}</p>;
   return (
     <>
-      {list.data.some(({ state }) => state === "failed") && <Again id={id} />}
+      {list.data.some(isRepeatable) && <Again id={id} />}
       <ul className={css.list} aria-label={t("settings.deliveries.title")}>
         {list.data.map((delivery) => (
           <li key={delivery.id} className={css.row}>
@@ -42,6 +42,11 @@ function Log({ id }: { id: number }) {
       <More list={list} />
     </>
   );
+}
+
+/** A test that failed is over; what was to be told of a device is not. */
+function isRepeatable({ state, type }: WebhookDelivery): boolean {
+  return state === "failed" && type !== "test";
 }
 
 const LOOK = {
