@@ -10,6 +10,7 @@ export type CreatedKey = Schemas["CreatedKey"];
 export type Device = Schemas["Device"];
 export type DeviceChange = Schemas["DeviceChange"];
 export type DeviceDraft = Schemas["DeviceDraft"];
+export type DevicePatch = Schemas["DevicePatch"];
 export type Estimate = Schemas["Estimate"];
 export type Estimates = Schemas["Estimates"];
 export type FleetSummary = Schemas["FleetSummary"];

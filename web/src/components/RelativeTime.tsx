@@ -13,7 +13,10 @@ function tick(): void {
 /** One clock for the whole page, running only while somebody looks at it. */
 function subscribe(listener: () => void): () => void {
   listeners.add(listener);
-  timer ??= setInterval(tick, 1000);
+  if (timer === undefined) {
+    now = new Date();
+    timer = setInterval(tick, 1000);
+  }
   return () => {
     listeners.delete(listener);
     if (listeners.size > 0) return;
@@ -22,9 +25,16 @@ function subscribe(listener: () => void): () => void {
   };
 }
 
+const present = () => now;
+
+/** The time to the second, for what has to stay true while it is on the screen. */
+export function useNow(): Date {
+  return useSyncExternalStore(subscribe, present, present);
+}
+
 /** "12 seconds ago", kept true while it is on the screen; the full time on hover. */
 export function RelativeTime({ at }: { at: string }) {
-  const current = useSyncExternalStore(subscribe, () => now);
+  const current = useNow();
   const time = new Date(at);
   return (
     <time dateTime={at} title={onTheClock(time)}>

@@ -1,22 +1,26 @@
-import { useDocumentTitle } from "@mantine/hooks";
+import { lazy, Suspense } from "react";
 import { Problem } from "../api/http";
 import { useDevice, useInstallation } from "../api/queries";
 import { useMay } from "../api/session";
 import type { Device, Installation } from "../api/types";
 import { NotFound } from "../app/NotFound";
+import { useTitle } from "../app/title";
 import { Failed, Loading } from "../components/States";
+import { t } from "../text";
 import { AlertsSection } from "./AlertsSection";
 import css from "./device.module.css";
+import { MountingSection } from "./done/MountingSection";
+import { NumbersSection } from "./done/NumbersSection";
+import { PageHead } from "./head/PageHead";
 import { HistorySection } from "./history/HistorySection";
-import { MountingSection } from "./MountingSection";
+import { LiveCard } from "./live/LiveCard";
 import { MountsSection } from "./MountsSection";
-import { NumbersSection } from "./NumbersSection";
-import { PageHead } from "./PageHead";
-import { Record } from "./Record";
-import { StageSection } from "./StageSection";
 import { shownMounting } from "./shown";
-import { UncertaintySection } from "./UncertaintySection";
-import { VerificationSection } from "./VerificationSection";
+import { UncertaintySection } from "./uncertainty/UncertaintySection";
+import { VerificationSection } from "./verification/VerificationSection";
+
+/** It is for paper: it may come after what is seen. */
+const Certificate = lazy(() => import("./certificate/Certificate"));
 
 /** One device: is it talking, what is missing, is it done, how is it mounted, and why. */
 export function DevicePage({ id }: { id: string }) {
@@ -24,13 +28,14 @@ export function DevicePage({ id }: { id: string }) {
   const device = useDevice(id, listed);
   const installation = useInstallation(id);
   const name = device.data?.name ?? id;
-  useDocumentTitle(`${name} · Livella`);
+  useTitle(name);
   if (installation.error instanceof Problem && [403, 404].includes(installation.error.status)) {
-    return <NotFound title={`The device ${id} does not exist`} />;
+    return <NotFound title={t("device.gone", { id })} />;
   }
-  if (installation.isPending || (listed && device.isPending)) return <Loading what="the device" lines={8} />;
+  const what = t("device.the_device");
+  if (installation.isPending || (listed && device.isPending)) return <Loading what={what} lines={8} />;
   if (installation.isError) {
-    return <Failed what="the device" error={installation.error} retry={installation.refetch} />;
+    return <Failed what={what} error={installation.error} retry={installation.refetch} />;
   }
   return <Content name={name} device={device.data} installation={installation.data} />;
 }
@@ -44,16 +49,19 @@ interface ContentProps {
 function Content({ name, device, installation }: ContentProps) {
   const shown = shownMounting(installation);
   const id = installation.device_id;
+  const verification = <VerificationSection installation={installation} />;
+  const now = installation.stage === "verifying";
   return (
     <>
       <div className={`${css.page} no-print`}>
-        <PageHead name={name} vehicle={device?.vehicle ?? null} installation={installation} />
-        <StageSection installation={installation} />
+        <PageHead name={name} device={device} installation={installation} />
+        <LiveCard installation={installation} />
+        {now && verification}
         <div className={css.columns}>
           <MountingSection shown={shown} />
           <div className={css.side}>
-            <VerificationSection verification={installation.verification} stage={installation.stage} />
-            <UncertaintySection shown={shown} limits={installation.limits} />
+            {!now && verification}
+            <UncertaintySection installation={installation} />
             <MountsSection id={id} />
           </div>
         </div>
@@ -63,7 +71,9 @@ function Content({ name, device, installation }: ContentProps) {
           {shown && <NumbersSection shown={shown} />}
         </div>
       </div>
-      <Record name={name} device={device} installation={installation} />
+      <Suspense fallback={null}>
+        <Certificate name={name} device={device} installation={installation} />
+      </Suspense>
     </>
   );
 }

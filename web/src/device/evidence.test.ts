@@ -9,7 +9,6 @@ import {
   labelled,
   shortened,
 } from "./evidence";
-import { sigmaLimits, sigmaShare } from "./sigma";
 
 const FOUND = Date.parse("2025-11-22T10:08:30Z") / 1000;
 const MOVED = {
@@ -112,12 +111,3 @@ it.each([
   [true, "true"],
   [{ a: 1 }, '{"a":1}'],
 ])("%o is shortened", (value, expected) => expect(shortened(value)).toBe(expected));
-
-it("keeps every bar and every mark on its scale, in order", () => {
-  const limits = sigmaLimits({ yaw_sigma_deg: 1.8, tilt_sigma_deg: 1.4 });
-  expect(limits).toEqual([1.4, 1.4, 1.8]);
-  const shares = [0.01, 0.5, ...limits, 5, 90].map(sigmaShare);
-  expect(shares).toEqual(shares.toSorted((a, b) => a - b));
-  expect(Math.min(...shares)).toBeGreaterThan(0);
-  expect(Math.max(...shares)).toBe(1);
-});

@@ -1,5 +1,7 @@
 /** What the page's charts have in common. Colours come from the page's own variables, so that light and dark both fit. */
 import uPlot from "uplot";
+import { locale } from "../text";
+import { apart } from "./apart";
 
 /** Put a chart into an element and keep its width; gives it, and the function that takes it away. */
 export function plotIn(element: HTMLElement, options: Omit<uPlot.Options, "width">): [uPlot, () => void] {
@@ -26,9 +28,9 @@ export function look(element: HTMLElement): { ink: string; font: string; axis: u
   return { ink, font, axis: { stroke: ink, font, grid: { stroke: line, width: 1 }, ticks: { show: false } } };
 }
 
-const SECONDS = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit", second: "2-digit" });
-const MINUTES = new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit" });
-const DAYS = new Intl.DateTimeFormat("en-GB", { day: "numeric", month: "short" });
+const SECONDS = { hour: "2-digit", minute: "2-digit", second: "2-digit" } as const;
+const MINUTES = { hour: "2-digit", minute: "2-digit" } as const;
+const DAYS = { day: "numeric", month: "short" } as const;
 
 /** Times (s since 1970) as fine as the steps between them; midnight shows the date. */
 export function timeTexts(ticks: readonly number[], step: number): string[] {
@@ -36,8 +38,35 @@ export function timeTexts(ticks: readonly number[], step: number): string[] {
   return ticks.map((tick) => {
     const time = new Date(tick * 1000);
     const midnight = time.getHours() + time.getMinutes() + time.getSeconds() === 0;
-    return (midnight ? DAYS : usual).format(time);
+    return new Intl.DateTimeFormat(locale(), midnight ? DAYS : usual).format(time);
   });
+}
+
+export interface LineName {
+  text: string;
+  colour: string;
+  /** where the line ends, on the vertical scale */
+  value: number;
+}
+
+/** CSS pixels between two names, at least. */
+const NAME_HEIGHT = 14;
+
+/** Write the names of lines where they end, right of the plot, none on another. */
+export function nameLines(plot: uPlot, font: string, names: readonly LineName[]): void {
+  const { ctx, bbox } = plot;
+  const pixel = uPlot.pxRatio;
+  const wanted = names.map(({ value }) => plot.valToPos(value, "y", true));
+  const places = apart(wanted, NAME_HEIGHT * pixel, bbox.top + bbox.height);
+  ctx.save();
+  ctx.font = font.replace("12px", `600 ${12 * pixel}px`);
+  ctx.textAlign = "left";
+  ctx.textBaseline = "middle";
+  names.forEach(({ text, colour }, i) => {
+    ctx.fillStyle = colour;
+    ctx.fillText(text, bbox.left + bbox.width + 6 * pixel, places[i] ?? 0);
+  });
+  ctx.restore();
 }
 
 /** "#rrggbb" with an alpha. */

@@ -27,3 +27,8 @@ function shown(source: Mount | Estimate, mount: Mount | null): Shown {
     mount,
   };
 }
+
+/** For programs: points before decimals in every language. */
+export function quaternionText(quaternion: Quaternion): string {
+  return quaternion.map((value) => value.toFixed(6)).join(", ");
+}

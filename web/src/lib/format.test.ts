@@ -1,6 +1,6 @@
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { setLanguage } from "../text";
-import { degreesText, fixed, listed, whole } from "./format";
+import { degreesText, fixed, listed, percent, whole } from "./format";
 import { ago, onTheClock } from "./time";
 
 it.each([
@@ -14,6 +14,8 @@ it.each([
   [9.96, "10°"],
   [-94.4, "\u221294°"],
 ])("%d degrees: %s", (value, text) => expect(degreesText(value)).toBe(text));
+
+it("gives shares in per cent", () => expect(percent(0.424)).toBe("42%"));
 
 it("groups what is large", () => expect(whole(12_345)).toBe("12,345"));
 

@@ -22,6 +22,11 @@ export function significant(value: number, digits: number): string {
   return signed(new Intl.NumberFormat(locale(), options).format(value));
 }
 
+/** A share, 0..1: "42%". */
+export function percent(share: number): string {
+  return new Intl.NumberFormat(locale(), { style: "percent" }).format(share);
+}
+
 /** "3.4°" below ten degrees, "94°" above. */
 export function degreesText(degrees: number): string {
   return `${fixed(degrees, Math.abs(degrees) < 9.95 ? 1 : 0)}°`;

@@ -32,6 +32,11 @@ export function describe(q: Quaternion): MountingWords {
   return { turned: ambiguous ? upright(pitch) : rotations(q), axes: axesSentence(q), ambiguous };
 }
 
+/** How well the mounting is known: one standard deviation of what is known least. */
+export function goodTo(sigma: readonly number[]): string {
+  return t("mounting.good_to", { degrees: degreesText(Math.max(...sigma)) });
+}
+
 function upright(pitch: number): string {
   const end = pitch > 0 ? "down" : "up";
   const exactly = 90 - Math.abs(pitch) < SMALL;

@@ -1,4 +1,5 @@
 import { deviceAxes, type Quaternion, type Vector } from "../../lib/rotation";
+import { t } from "../../text";
 import css from "./picture.module.css";
 import { drawn, VIEWS, type View } from "./views";
 
@@ -11,7 +12,7 @@ export function Drawings({ quaternion }: { quaternion: Quaternion }) {
   return (
     <div className={css.drawings}>
       {VIEWS.map((view) => (
-        <Drawing key={view.title} view={view} axes={deviceAxes(quaternion)} />
+        <Drawing key={view.name} view={view} axes={deviceAxes(quaternion)} />
       ))}
     </div>
   );
@@ -35,7 +36,7 @@ function Drawing({ view, axes }: { view: View; axes: readonly Vector[] }) {
           </g>
         ))}
       </svg>
-      <figcaption>{view.title}</figcaption>
+      <figcaption>{t(`device.picture.from_${view.name}`)}</figcaption>
     </figure>
   );
 }

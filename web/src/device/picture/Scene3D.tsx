@@ -1,17 +1,20 @@
 import { SegmentedControl, useComputedColorScheme } from "@mantine/core";
 import { useReducedMotion } from "@mantine/hooks";
-import { useEffect, useRef, useState } from "react";
+import { type KeyboardEvent, useEffect, useRef, useState } from "react";
 import type { Quaternion } from "../../lib/rotation";
+import { t } from "../../text";
 import type { Palette } from "./car";
 import css from "./picture.module.css";
 import { CarScene, type ViewName } from "./scene";
 
-const VIEWS: readonly { value: ViewName; label: string }[] = [
-  { value: "corner", label: "Corner" },
-  { value: "above", label: "Above" },
-  { value: "left", label: "Left" },
-  { value: "behind", label: "Behind" },
-];
+const VIEWS: readonly ViewName[] = ["corner", "above", "left", "behind"];
+/** Turns of the camera about the vehicle, degrees to its left and up. */
+const KEYS: Record<string, readonly [number, number]> = {
+  ArrowLeft: [15, 0],
+  ArrowRight: [-15, 0],
+  ArrowUp: [0, 15],
+  ArrowDown: [0, -15],
+};
 
 export interface SceneProps {
   quaternion: Quaternion;
@@ -23,7 +26,7 @@ export interface SceneProps {
 export default function Scene3D({ quaternion, text, onUnable }: SceneProps) {
   const host = useRef<HTMLDivElement>(null);
   const scene = useRef<CarScene>(null);
-  const [view, setView] = useState<ViewName>("corner");
+  const [view, setView] = useState<ViewName | "">("corner");
   const scheme = useComputedColorScheme("light");
   const still = useReducedMotion();
   const latest = useRef({ quaternion, view, onUnable });
@@ -33,13 +36,13 @@ export default function Scene3D({ quaternion, text, onUnable }: SceneProps) {
   useEffect(() => {
     if (!host.current) return;
     try {
-      scene.current = new CarScene(host.current, palette(host.current), still);
+      scene.current = new CarScene(host.current, palette(host.current), still, () => setView(""));
     } catch {
       latest.current.onUnable();
       return;
     }
     scene.current.turn(latest.current.quaternion, false);
-    scene.current.look(latest.current.view);
+    scene.current.look(latest.current.view || "corner");
     return () => scene.current?.dispose();
   }, [scheme, still]);
 
@@ -49,13 +52,29 @@ export default function Scene3D({ quaternion, text, onUnable }: SceneProps) {
     setView(chosen);
     scene.current?.look(chosen);
   };
+  const press = (event: KeyboardEvent) => {
+    const turn = KEYS[event.key];
+    if (!turn) return;
+    event.preventDefault();
+    scene.current?.orbit(...turn);
+  };
   return (
     <>
-      <div ref={host} className={css.stage} role="img" aria-label={text} />
+      {/* biome-ignore lint/a11y/useSemanticElements: a fieldset is for forms */}
+      <div
+        className={css.stage}
+        role="group"
+        // biome-ignore lint/a11y/noNoninteractiveTabindex: the arrow keys turn what is in it
+        tabIndex={0}
+        aria-label={t("device.picture.about")}
+        onKeyDown={press}
+      >
+        <div ref={host} role="img" aria-label={text} />
+      </div>
       <SegmentedControl
-        aria-label="View of the vehicle"
+        aria-label={t("device.picture.views")}
         fullWidth
-        data={[...VIEWS]}
+        data={VIEWS.map((value) => ({ value, label: t(`device.picture.${value}`) }))}
         value={view}
         onChange={(value) => choose(value as ViewName)}
       />

@@ -20,6 +20,7 @@ import {
   Vector2,
   Vector3,
 } from "three";
+import { t } from "../../text";
 
 export interface Palette {
   car: string;
@@ -137,19 +138,22 @@ export function makeDirections(palette: Palette): Group {
     group.add(new ArrowHelper(direction, from, length, palette.ink, 0.22, 0.14));
     group.add(label(name, palette.ink, from.clone().addScaledVector(direction, length + 0.35), 0.3));
   };
-  add("forward", new Vector3(2.4, 0, 0), new Vector3(1, 0, 0), 0.8);
-  add("left", new Vector3(0, 1.1, 0), new Vector3(0, 1, 0), 0.7);
+  add(t("device.picture.forward"), new Vector3(2.4, 0, 0), new Vector3(1, 0, 0), 0.8);
+  add(t("device.picture.leftward"), new Vector3(0, 1.1, 0), new Vector3(0, 1, 0), 0.7);
   return group;
 }
+
+const LETTERING = "600 46px system-ui, sans-serif";
 
 /** Text that always faces the reader. */
 function label(text: string, color: string, position: Vector3, height: number): Sprite {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d");
   canvas.height = 64;
-  canvas.width = Math.max(64, 34 * text.length);
   if (context) {
-    context.font = "600 46px system-ui, sans-serif";
+    context.font = LETTERING;
+    canvas.width = Math.max(64, Math.ceil(context.measureText(text).width) + 8);
+    context.font = LETTERING;
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.fillStyle = color;

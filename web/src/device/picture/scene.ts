@@ -3,14 +3,16 @@ import {
   DirectionalLight,
   GridHelper,
   HemisphereLight,
+  Matrix4,
   PerspectiveCamera,
   Quaternion,
   Scene,
+  Spherical,
   Vector3,
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import type { Quaternion as Mounting } from "../../lib/rotation";
+import { DEGREES, type Quaternion as Mounting } from "../../lib/rotation";
 import { makeCar, makeDevice, makeDirections, type Palette } from "./car";
 
 export type ViewName = "corner" | "above" | "left" | "behind";
@@ -23,6 +25,11 @@ const CAMERAS: Record<ViewName, Vector3> = {
   behind: new Vector3(-7.4, 0, 0.8),
 };
 const TARGET = new Vector3(0.2, 0, 0.85);
+/** Camera's angle from straight above, rad: hardly below the ground. */
+const LOWEST = Math.PI * 0.52;
+/** Spherical coordinates know y as up. */
+const Y_UP = new Matrix4().makeRotationX(-Math.PI / 2);
+const Z_UP = new Matrix4().makeRotationX(Math.PI / 2);
 /** ms */
 const TURN = 500;
 
@@ -40,6 +47,8 @@ export class CarScene {
     private readonly host: HTMLElement,
     palette: Palette,
     private readonly still: boolean,
+    /** somebody turned the picture: it shows none of the views any more */
+    private readonly onOrbit: () => void,
   ) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
@@ -68,8 +77,9 @@ export class CarScene {
     controls.target.copy(TARGET);
     controls.enablePan = false;
     controls.enableZoom = false;
-    controls.maxPolarAngle = Math.PI * 0.52;
+    controls.maxPolarAngle = LOWEST;
     controls.addEventListener("change", () => this.render());
+    controls.addEventListener("start", this.onOrbit);
     // One finger sideways turns the car, up and down scrolls the page.
     this.renderer.domElement.style.touchAction = "pan-y";
     return controls;
@@ -99,6 +109,17 @@ export class CarScene {
     this.camera.position.copy(TARGET).add(CAMERAS[view]);
     this.controls.update();
     this.render();
+  }
+
+  /** Turn the camera about the vehicle, degrees to its left and up, as far as the controls let it. */
+  orbit(left: number, up: number): void {
+    const seen = new Spherical().setFromVector3(this.camera.position.clone().sub(TARGET).applyMatrix4(Y_UP));
+    seen.theta += left / DEGREES;
+    seen.phi = Math.min(Math.max(seen.phi - up / DEGREES, 0.01), LOWEST);
+    this.camera.position.setFromSpherical(seen).applyMatrix4(Z_UP).add(TARGET);
+    this.controls.update();
+    this.render();
+    this.onOrbit();
   }
 
   dispose(): void {

@@ -9,7 +9,7 @@ const [above, side, behind] = VIEWS;
 if (!above || !side || !behind) throw new Error("three views");
 
 describe("views", () => {
-  it.each(VIEWS)("$title: right, up and toward are a right-handed frame", ({ right, up, toward }) => {
+  it.each(VIEWS)("$name: right, up and toward are a right-handed frame", ({ right, up, toward }) => {
     const [a, b, c] = right;
     const [d, e, f] = up;
     const cross: Vector = [b * f - c * e, c * d - a * f, a * e - b * d];

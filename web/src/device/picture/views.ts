@@ -3,7 +3,7 @@ import type { Vector } from "../../lib/rotation";
 import { dot } from "../../lib/rotation";
 
 export interface View {
-  title: string;
+  name: "above" | "left" | "behind";
   /** vehicle directions that are right and up on the paper */
   right: Vector;
   up: Vector;
@@ -18,7 +18,7 @@ const WHEELS =
 
 export const VIEWS: readonly View[] = [
   {
-    title: "From above",
+    name: "above",
     right: [0, -1, 0],
     up: [1, 0, 0],
     toward: [0, 0, 1],
@@ -26,14 +26,14 @@ export const VIEWS: readonly View[] = [
       "M-.85 1.6Q-.8 2.2 0 2.2T.85 1.6V-1.7Q.8 -2.15 0 -2.15T-.85 -1.7ZM-.68 1Q0 1.25 .68 1L.6 .45H-.6ZM-.62 -1.1H.62L.68 -1.6Q0 -1.75 -.68 -1.6Z",
   },
   {
-    title: "From the left",
+    name: "left",
     right: [-1, 0, 0],
     up: [0, 0, 1],
     toward: [0, 1, 0],
     outline: `M-2.2 -.3V.1Q-2.1 .3 -1.1 .38L-.35 .9H1.1Q1.7 .8 2 .4L2.15 .3V-.3ZM-.75 .38L-.25 .78H.35V.38ZM.5 .38V.78H1.05Q1.4 .7 1.6 .38Z${WHEELS}`,
   },
   {
-    title: "From behind",
+    name: "behind",
     right: [0, -1, 0],
     up: [0, 0, 1],
     toward: [-1, 0, 0],

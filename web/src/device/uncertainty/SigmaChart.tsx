@@ -1,0 +1,24 @@
+import { lazy, Suspense, useMemo } from "react";
+import { useEstimates } from "../../api/queries";
+import type { Installation } from "../../api/types";
+import { Failed, Loading } from "../../components/States";
+import { t } from "../../text";
+import { calibrationRange, sigmaHistory } from "./sigma";
+
+const SigmaLines = lazy(() => import("./SigmaLines"));
+
+/** How the three sigmas shrank. The chart comes when there is something to draw. */
+export function SigmaChart({ installation }: { installation: Installation }) {
+  const { device_id, limits } = installation;
+  const estimates = useEstimates(device_id, calibrationRange(installation));
+  const history = useMemo(() => estimates.data && sigmaHistory(estimates.data), [estimates.data]);
+  if (estimates.isError)
+    return <Failed what={t("device.sure.the_chart")} error={estimates.error} retry={estimates.refetch} />;
+  if (!history) return <Loading what={t("device.sure.the_chart")} />;
+  if (history.time.length < 2) return null;
+  return (
+    <Suspense fallback={<Loading what={t("device.sure.the_chart")} />}>
+      <SigmaLines history={history} limits={limits} />
+    </Suspense>
+  );
+}
