@@ -1,8 +1,9 @@
-import { type ComponentType, lazy, Suspense } from "react";
+import { Suspense } from "react";
+import { optional } from "./optional";
 import type { QrProps } from "./QrSvg";
 
-/** The encoder comes only where a code is shown. Where it does not come nothing is lost: the text stands beside it. */
-const QrSvg = lazy<ComponentType<QrProps>>(() => import("./QrSvg").catch(() => ({ default: () => null })));
+/** The encoder comes only where a code is shown; the text stands beside it. */
+const QrSvg = optional(() => import("./QrSvg"));
 
 /** A text as a QR code, to be read by a phone's camera. */
 export function QrCode({ text, label, size = 176 }: QrProps) {

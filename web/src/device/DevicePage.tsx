@@ -1,10 +1,11 @@
-import { lazy, Suspense } from "react";
+import { Suspense } from "react";
 import { Problem } from "../api/http";
 import { useDevice, useInstallation } from "../api/queries";
 import { useMay } from "../api/session";
 import type { Device, Installation } from "../api/types";
 import { NotFound } from "../app/NotFound";
 import { useTitle } from "../app/title";
+import { optional } from "../components/optional";
 import { Failed, Loading } from "../components/States";
 import { t } from "../text";
 import { AlertsSection } from "./AlertsSection";
@@ -20,7 +21,7 @@ import { UncertaintySection } from "./uncertainty/UncertaintySection";
 import { VerificationSection } from "./verification/VerificationSection";
 
 /** It is for paper: it may come after what is seen. */
-const Certificate = lazy(() => import("./certificate/Certificate"));
+const Certificate = optional(() => import("./certificate/Certificate"));
 
 /** One device: is it talking, what is missing, is it done, how is it mounted, and why. */
 export function DevicePage({ id }: { id: string }) {

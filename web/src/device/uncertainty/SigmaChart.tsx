@@ -1,11 +1,12 @@
-import { lazy, Suspense, useMemo } from "react";
+import { Suspense, useMemo } from "react";
 import { useEstimates } from "../../api/queries";
 import type { Installation } from "../../api/types";
+import { optional } from "../../components/optional";
 import { Failed, Loading } from "../../components/States";
 import { t } from "../../text";
 import { calibrationRange, sigmaHistory } from "./sigma";
 
-const SigmaLines = lazy(() => import("./SigmaLines"));
+const SigmaLines = optional(() => import("./SigmaLines"));
 
 /** How the three sigmas shrank. The chart comes when there is something to draw. */
 export function SigmaChart({ installation }: { installation: Installation }) {

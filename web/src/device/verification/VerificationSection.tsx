@@ -1,6 +1,7 @@
 import { CircleCheckBig, CircleX } from "lucide-react";
-import { lazy, Suspense, useMemo } from "react";
+import { Suspense, useMemo } from "react";
 import type { Installation, Verification } from "../../api/types";
+import { optional } from "../../components/optional";
 import { Ring } from "../../components/Ring";
 import { Section } from "../../components/Section";
 import { Loading } from "../../components/States";
@@ -10,7 +11,7 @@ import { t } from "../../text";
 import { countdown, kmh, speeds, spokenOf } from "./trace";
 import css from "./verification.module.css";
 
-const TraceLines = lazy(() => import("./TraceLines"));
+const TraceLines = optional(() => import("./TraceLines"));
 
 /** The drive test: how long it still takes, and how far the two speeds are apart. */
 export function VerificationSection({ installation }: { installation: Installation }) {
