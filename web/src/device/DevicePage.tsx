@@ -55,7 +55,7 @@ function Content({ name, device, installation }: ContentProps) {
   return (
     <>
       <div className={`${css.page} no-print`}>
-        <PageHead name={name} device={device} installation={installation} />
+        <PageHead name={name} id={id} device={device} />
         <LiveCard installation={installation} />
         {now && verification}
         <div className={css.columns}>

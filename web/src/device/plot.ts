@@ -49,22 +49,35 @@ export interface LineName {
   value: number;
 }
 
-/** CSS pixels between two names, at least. */
-const NAME_HEIGHT = 14;
+/** CSS pixels between two names at least, and before them. */
+const NAME = { height: 14, before: 6 };
+
+/** CSS pixels right of the plot that names take. */
+export function roomForNames(font: string, words: readonly string[]): number {
+  const context = document.createElement("canvas").getContext("2d");
+  if (!context) return 0;
+  context.font = bold(font, 1);
+  return Math.ceil(Math.max(...words.map((word) => context.measureText(word).width))) + NAME.before + 2;
+}
+
+/** The charts' lettering for what is written on the canvas itself, whose pixels are finer than the page's. */
+function bold(font: string, pixel: number): string {
+  return font.replace("12px", `600 ${12 * pixel}px`);
+}
 
 /** Write the names of lines where they end, right of the plot, none on another. */
 export function nameLines(plot: uPlot, font: string, names: readonly LineName[]): void {
   const { ctx, bbox } = plot;
   const pixel = uPlot.pxRatio;
   const wanted = names.map(({ value }) => plot.valToPos(value, "y", true));
-  const places = apart(wanted, NAME_HEIGHT * pixel, bbox.top + bbox.height);
+  const places = apart(wanted, NAME.height * pixel, bbox.top + bbox.height);
   ctx.save();
-  ctx.font = font.replace("12px", `600 ${12 * pixel}px`);
+  ctx.font = bold(font, pixel);
   ctx.textAlign = "left";
   ctx.textBaseline = "middle";
   names.forEach(({ text, colour }, i) => {
     ctx.fillStyle = colour;
-    ctx.fillText(text, bbox.left + bbox.width + 6 * pixel, places[i] ?? 0);
+    ctx.fillText(text, bbox.left + bbox.width + NAME.before * pixel, places[i] ?? 0);
   });
   ctx.restore();
 }

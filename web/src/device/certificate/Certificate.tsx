@@ -46,9 +46,14 @@ function Facts({ name, device, installation }: CertificateProps) {
   const suspect = mount?.status === "suspect";
   return (
     <dl className={css.facts}>
-      <Fact term={t("device.certificate.device")}>{name}</Fact>
-      <Fact term={t("device.certificate.id")}>{device_id}</Fact>
-      <Fact term={t("device.certificate.vehicle")}>{device?.vehicle ?? t("common.unknown")}</Fact>
+      <Fact term={t("device.certificate.device")}>
+        <span className={css.brief}>
+          {name} ({device_id})
+        </span>
+      </Fact>
+      <Fact term={t("device.certificate.vehicle")}>
+        <span className={css.brief}>{device?.vehicle ?? t("common.unknown")}</span>
+      </Fact>
       <Fact term={t("device.certificate.stage")}>
         {suspect ? t("device.certificate.suspect") : stageWord(stage)}
       </Fact>
@@ -63,7 +68,7 @@ function Facts({ name, device, installation }: CertificateProps) {
       </Fact>
       {device?.notes && (
         <Fact term={t("device.certificate.notes")}>
-          <span className={css.notes}>{device.notes}</span>
+          <span className={css.brief}>{device.notes}</span>
         </Fact>
       )}
     </dl>

@@ -2,9 +2,8 @@ import { Anchor } from "@mantine/core";
 import { ArrowLeft, Printer } from "lucide-react";
 import { Link } from "wouter";
 import { useMay } from "../../api/session";
-import type { Device, Installation } from "../../api/types";
-import { RelativeTime } from "../../components/RelativeTime";
-import { Trans, t } from "../../text";
+import type { Device } from "../../api/types";
+import { t } from "../../text";
 import { HeadAction } from "./HeadAction";
 import css from "./head.module.css";
 import { MoreMenu } from "./MoreMenu";
@@ -12,14 +11,13 @@ import { RefitButton } from "./RefitButton";
 
 interface PageHeadProps {
   name: string;
+  id: string;
   /** unknown to a device's own key */
   device: Device | undefined;
-  installation: Installation;
 }
 
-export function PageHead({ name, device, installation }: PageHeadProps) {
+export function PageHead({ name, id, device }: PageHeadProps) {
   const installer = useMay("installer");
-  const id = installation.device_id;
   return (
     <header className={css.head}>
       {installer && (
@@ -32,9 +30,6 @@ export function PageHead({ name, device, installation }: PageHeadProps) {
         <p className={css.facts}>
           {name !== id && <span>{id}</span>}
           {device?.vehicle && <span>{device.vehicle}</span>}
-          <span>
-            <LastData at={installation.last_data_at} />
-          </span>
         </p>
       </div>
       <div className={css.actions}>
@@ -44,9 +39,4 @@ export function PageHead({ name, device, installation }: PageHeadProps) {
       </div>
     </header>
   );
-}
-
-function LastData({ at }: { at: string | null }) {
-  if (at === null) return t("device.no_data_yet");
-  return <Trans i18nKey="device.last_data" components={{ ago: <RelativeTime at={at} /> }} />;
 }

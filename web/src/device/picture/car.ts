@@ -105,7 +105,9 @@ export function makeDevice(palette: Palette): Group {
     const color = palette.axes[i] ?? palette.ink;
     device.add(new ArrowHelper(direction, new Vector3(), AXIS_LENGTH, color, ...HEAD));
     device.add(shaft(direction, color));
-    device.add(label("xyz"[i] ?? "", color, direction.clone().multiplyScalar(AXIS_LENGTH + 0.22), 0.34));
+    device.add(
+      label("xyz"[i] ?? "", color, direction.clone().multiplyScalar(AXIS_LENGTH + 0.22), LABEL.axis),
+    );
   });
   device.position.copy(DEVICE_AT);
   device.traverse(drawLast);
@@ -136,17 +138,21 @@ export function makeDirections(palette: Palette): Group {
   const group = new Group();
   const add = (name: string, from: Vector3, direction: Vector3, length: number) => {
     group.add(new ArrowHelper(direction, from, length, palette.ink, 0.22, 0.14));
-    group.add(label(name, palette.ink, from.clone().addScaledVector(direction, length + 0.35), 0.3));
+    group.add(
+      label(name, palette.ink, from.clone().addScaledVector(direction, length + 0.35), LABEL.direction),
+    );
   };
   add(t("device.picture.forward"), new Vector3(2.4, 0, 0), new Vector3(1, 0, 0), 0.8);
   add(t("device.picture.leftward"), new Vector3(0, 1.1, 0), new Vector3(0, 1, 0), 0.7);
   return group;
 }
 
+/** CSS pixels; large enough for a phone in the sun, whatever the size of the picture. */
+const LABEL = { axis: 19, direction: 15 };
 const LETTERING = "600 46px system-ui, sans-serif";
 
 /** Text that always faces the reader. */
-function label(text: string, color: string, position: Vector3, height: number): Sprite {
+function label(text: string, color: string, position: Vector3, pixels: number): Sprite {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("2d");
   canvas.height = 64;
@@ -161,9 +167,20 @@ function label(text: string, color: string, position: Vector3, height: number): 
   }
   const map = new CanvasTexture(canvas);
   map.colorSpace = SRGBColorSpace;
-  const sprite = new Sprite(new SpriteMaterial({ map, depthTest: false, transparent: true }));
+  const sprite = new Sprite(
+    new SpriteMaterial({ map, depthTest: false, transparent: true, sizeAttenuation: false }),
+  );
   sprite.position.copy(position);
-  sprite.scale.set((height * canvas.width) / canvas.height, height, 1);
+  sprite.userData.size = [(pixels * canvas.width) / canvas.height, pixels];
   sprite.renderOrder = 2;
   return sprite;
+}
+
+/** Keep all labels at their size when the picture changes its own; `pixel`: what a CSS pixel is at the distance 1. */
+export function sizeLabels(scene: Object3D, pixel: number): void {
+  scene.traverse((part) => {
+    if (!(part instanceof Sprite)) return;
+    const [width, height] = part.userData.size as [number, number];
+    part.scale.set(width * pixel, height * pixel, 1);
+  });
 }

@@ -13,7 +13,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { DEGREES, type Quaternion as Mounting } from "../../lib/rotation";
-import { makeCar, makeDevice, makeDirections, type Palette } from "./car";
+import { makeCar, makeDevice, makeDirections, type Palette, sizeLabels } from "./car";
 
 export type ViewName = "corner" | "above" | "left" | "behind";
 
@@ -139,6 +139,7 @@ export class CarScene {
     // A narrow picture needs a wider angle to hold the whole car.
     this.camera.fov = this.camera.aspect > 1.5 ? 36 : 44;
     this.camera.updateProjectionMatrix();
+    sizeLabels(this.scene, (2 * Math.tan(this.camera.fov / DEGREES / 2)) / clientHeight);
     this.render();
   }
 

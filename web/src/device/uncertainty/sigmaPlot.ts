@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import { fixed } from "../../lib/format";
 import { t } from "../../text";
-import { look, nameLines, plotIn, timeTexts } from "../plot";
+import { look, nameLines, plotIn, roomForNames, timeTexts } from "../plot";
 import { type SigmaHistory, sigmaRange } from "./sigma";
 
 /** Pixels. */
@@ -41,14 +41,14 @@ function options(
   limits: readonly number[],
   range: () => [number, number],
 ): Omit<uPlot.Options, "width"> {
-  const { axis } = look(element);
+  const { axis, font } = look(element);
   const style = getComputedStyle(element);
   return {
     height: HEIGHT,
     legend: { show: false },
     cursor: { show: false },
     scales: { x: { time: true }, y: { distr: 3, range } },
-    padding: [8, 74, 0, 0],
+    padding: [8, roomForNames(font, words()), 0, 0],
     axes: [
       { ...axis, size: 24, space: 64, values: (_, ticks, __, ___, step) => timeTexts(ticks, step) },
       {
@@ -72,12 +72,13 @@ function options(
   };
 }
 
+const words = () => [t("common.roll"), t("common.pitch"), t("common.yaw")];
+
 function label(plot: uPlot, element: HTMLElement): void {
   const style = getComputedStyle(element);
-  const words = [t("common.roll"), t("common.pitch"), t("common.yaw")];
   const names = LINES.flatMap(({ colour }, i) => {
     const value = Array.from(plot.data[i + 1] ?? []).findLast((sigma) => sigma !== null);
-    const text = words[i] ?? "";
+    const text = words()[i] ?? "";
     return value ? [{ text, colour: style.getPropertyValue(colour), value }] : [];
   });
   nameLines(plot, look(element).font, names);
@@ -101,6 +102,7 @@ function drawLimits(plot: uPlot, element: HTMLElement, limits: readonly number[]
     ctx.stroke();
   }
   ctx.font = font.replace("12px", `${12 * pixel}px`);
+  ctx.textAlign = "left";
   ctx.textBaseline = "top";
   const lowest = plot.valToPos(Math.min(...limits), "y", true);
   ctx.fillText(t("device.sure.limit"), bbox.left + 4 * pixel, lowest + 3 * pixel);

@@ -72,8 +72,8 @@ function Left({ test }: { test: Verification }) {
   );
 }
 
-function SpeedError({ test: { error_mps, limit_mps } }: { test: Verification }) {
-  if (error_mps === null) return null;
+function SpeedError({ test: { state, error_mps, limit_mps } }: { test: Verification }) {
+  if (state === "idle" || error_mps === null) return null;
   const within = Math.abs(error_mps) <= limit_mps;
   const Icon = within ? CircleCheckBig : CircleX;
   return (

@@ -2,7 +2,7 @@
 import type uPlot from "uplot";
 import { fixed } from "../../lib/format";
 import { t } from "../../text";
-import { look, nameLines, plotIn } from "../plot";
+import { look, nameLines, plotIn, roomForNames } from "../plot";
 import type { Speeds } from "./trace";
 
 /** Pixels. */
@@ -26,14 +26,14 @@ export function tracePlot(element: HTMLElement): TracePlot {
 }
 
 function options(element: HTMLElement): Omit<uPlot.Options, "width"> {
-  const { axis } = look(element);
+  const { axis, font } = look(element);
   const style = getComputedStyle(element);
   return {
     height: HEIGHT,
     legend: { show: false },
     cursor: { show: false },
     scales: { x: { time: false }, y: { range: (_, least, most) => speedRange(least, most) } },
-    padding: [8, 62, 0, 0],
+    padding: [8, roomForNames(font, words()), 0, 0],
     axes: [
       { ...axis, size: 24, space: 48, values: (_, ticks) => ticks.map((tick) => `${fixed(tick, 0)} s`) },
       { ...axis, size: 46, space: 30, values: (_, ticks) => ticks.map((tick) => fixed(tick, 0)) },
@@ -56,11 +56,12 @@ export function speedRange(least: number, most: number): [number, number] {
   return [Math.min(0, Math.floor(least)), Math.max(LEAST_SPAN, 1.08 * most)];
 }
 
+const words = () => [t("device.test.gps"), t("device.test.sensor")];
+
 function label(plot: uPlot, element: HTMLElement): void {
   const style = getComputedStyle(element);
-  const words = [t("device.test.gps"), t("device.test.sensor")];
   const names = LINES.map(({ colour }, i) => ({
-    text: words[i] ?? "",
+    text: words()[i] ?? "",
     colour: style.getPropertyValue(colour),
     value: plot.data[i + 1]?.at(-1) ?? 0,
   }));

@@ -2,8 +2,6 @@
 export const device = {
   the_device: "the device",
   gone: "The device {{id}} does not exist",
-  no_data_yet: "No data yet",
-  last_data: "Last data <ago />",
 
   action: {
     print: "Print the certificate",
@@ -165,7 +163,6 @@ export const device = {
   certificate: {
     title: "Installation certificate",
     device: "Device",
-    id: "Device id",
     vehicle: "Vehicle",
     stage: "Stage",
     confirmed: "Confirmed",

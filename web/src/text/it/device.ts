@@ -3,8 +3,6 @@ import type { en, Translated } from "../en";
 export const device: Translated<typeof en.device> = {
   the_device: "il dispositivo",
   gone: "Il dispositivo {{id}} non esiste",
-  no_data_yet: "Ancora nessun dato",
-  last_data: "Ultimi dati <ago />",
 
   action: {
     print: "Stampa il certificato",
@@ -170,7 +168,6 @@ export const device: Translated<typeof en.device> = {
   certificate: {
     title: "Certificato di installazione",
     device: "Dispositivo",
-    id: "Codice del dispositivo",
     vehicle: "Veicolo",
     stage: "Fase",
     confirmed: "Confermato il",
