@@ -22,8 +22,12 @@ export function connect(client: QueryClient, onStatus: (status: LiveStatus) => v
   const stream = new LiveStream(client, onStatus);
   stream.open();
   document.addEventListener("visibilitychange", stream.onVisibility);
+  addEventListener("offline", stream.onOffline);
+  addEventListener("online", stream.onVisibility);
   return () => {
     document.removeEventListener("visibilitychange", stream.onVisibility);
+    removeEventListener("offline", stream.onOffline);
+    removeEventListener("online", stream.onVisibility);
     stream.stop();
   };
 }
@@ -71,6 +75,12 @@ class LiveStream {
     clearTimeout(this.hide);
     if (document.hidden) this.hide = setTimeout(() => this.sleep(), HIDDEN);
     else if (!this.source) this.open();
+  };
+
+  /** A stream whose network is gone ends only when TCP gives it up, much later. */
+  readonly onOffline = (): void => {
+    this.close();
+    this.onStatus("reconnecting");
   };
 
   private sleep(): void {
