@@ -40,7 +40,8 @@ export const keys = {
   device: (id: string) => ["device", id],
   installation: (id: string) => ["device", id, "installation"],
   estimates: (id: string) => ["device", id, "estimates"],
-  estimatesIn: (id: string, range: TimeRange) => ["device", id, "estimates", range],
+  /** history that no event of the live stream changes */
+  past: (id: string) => ["device", id, "past"],
   mounts: (id: string) => ["device", id, "mounts"],
   alerts: (id: string) => ["device", id, "alerts"],
   alertLists: ["alerts"],

@@ -7,13 +7,11 @@ import {
   useQueryClient,
 } from "@tanstack/react-query";
 import { answer, http } from "./http";
-import { keys, type TimeRange } from "./keys";
+import { keys } from "./keys";
 import { newer } from "./merge";
 import type { Installation } from "./types";
 
 const PAGE = 100;
-/** Points of the angle history asked for: about one for every two pixels of a wide chart. */
-const MAX_POINTS = 800;
 
 export function useSummary() {
   return useQuery({ queryKey: keys.summary, queryFn: () => answer(http.GET("/api/v1/fleet/summary")) });
@@ -35,29 +33,6 @@ export function useInstallation(id: string) {
     queryFn: () => answer(http.GET("/api/v1/devices/{device_id}/installation", of(id))),
     structuralSharing: (known, told) =>
       replaceEqualDeep(known, newer(known as Installation | undefined, told as Installation)),
-  });
-}
-
-export function useEstimates(id: string, range: TimeRange) {
-  const query = {
-    max_points: MAX_POINTS,
-    ...(range.from && { from: range.from }),
-    ...(range.to && { to: range.to }),
-  };
-  return useQuery({
-    queryKey: keys.estimatesIn(id, range),
-    queryFn: () =>
-      answer(
-        http.GET("/api/v1/devices/{device_id}/estimates", { params: { path: { device_id: id }, query } }),
-      ),
-    placeholderData: keepPreviousData,
-  });
-}
-
-export function useMounts(id: string) {
-  return useQuery({
-    queryKey: keys.mounts(id),
-    queryFn: () => answer(http.GET("/api/v1/devices/{device_id}/mounts", of(id))),
   });
 }
 

@@ -7,7 +7,8 @@ import { Section } from "../components/Section";
 import { Failed, Loading } from "../components/States";
 import { Notice } from "../components/Tone";
 import type { Tone } from "../lib/stages";
-import css from "./device.module.css";
+import { Trans, t } from "../text";
+import css from "./alerts.module.css";
 import { Evidence } from "./Evidence";
 import { beginning } from "./evidence";
 
@@ -16,35 +17,34 @@ const LOOK: Record<Alert["severity"], { tone: Tone; icon: typeof Info }> = {
   warning: { tone: "warn", icon: TriangleAlert },
   critical: { tone: "bad", icon: CircleAlert },
 };
-const STATE: Record<Alert["state"], string> = {
-  open: "Open",
-  acknowledged: "Acknowledged",
-  resolved: "Resolved",
-};
 
 /** What the service found wrong with this device. Managers read the findings, others only how many there are. */
 export function AlertsSection({ id, open }: { id: string; open: number }) {
   const manager = useMay("manager");
-  return <Section title="Alerts">{manager ? <Alerts id={id} /> : <Count open={open} />}</Section>;
+  return (
+    <Section title={t("history.alert.title")}>{manager ? <Alerts id={id} /> : <Count open={open} />}</Section>
+  );
 }
 
 function Count({ open }: { open: number }) {
   if (open === 0) return <Nothing />;
+  const title = t("history.alert.open", { count: open, number: open });
   return (
-    <Notice tone="warn" icon={TriangleAlert} title={open === 1 ? "One open alert" : `${open} open alerts`}>
-      <p>A fleet manager can read what was found.</p>
+    <Notice tone="warn" icon={TriangleAlert} title={title}>
+      <p>{t("history.alert.ask_manager")}</p>
     </Notice>
   );
 }
 
 function Nothing() {
-  return <p className={css.quiet}>None.</p>;
+  return <p className={css.quiet}>{t("history.alert.none")}</p>;
 }
 
 function Alerts({ id }: { id: string }) {
   const alerts = useDeviceAlerts(id, true);
-  if (alerts.isPending) return <Loading what="the alerts" />;
-  if (alerts.isError) return <Failed what="the alerts" error={alerts.error} retry={alerts.refetch} />;
+  const what = t("history.alert.the_alerts");
+  if (alerts.isPending) return <Loading what={what} />;
+  if (alerts.isError) return <Failed what={what} error={alerts.error} retry={alerts.refetch} />;
   if (alerts.data.items.length === 0) return <Nothing />;
   return (
     <ul className={css.alerts}>
@@ -57,23 +57,27 @@ function Alerts({ id }: { id: string }) {
   );
 }
 
-function AlertNotice({ alert }: { alert: Alert }) {
-  const { tone, icon } = LOOK[alert.severity];
-  const since = beginning(alert.data);
-  const resolved = alert.state === "resolved";
+function AlertNotice({
+  alert: { severity, state, message, opened_at, count, kind, data },
+}: {
+  alert: Alert;
+}) {
+  const { tone, icon } = LOOK[severity];
+  const since = beginning(data);
+  const resolved = state === "resolved";
   return (
-    <Notice tone={resolved ? "neutral" : tone} icon={icon} title={alert.message}>
-      <p className={css.quiet}>
-        {STATE[alert.state]} · <ClockTime at={alert.opened_at} />
+    <Notice tone={resolved ? "neutral" : tone} icon={icon} title={message}>
+      <p className={css.facts}>
+        <span>{t(`history.alert.state.${state}`)}</span>
+        <ClockTime at={opened_at} />
         {since && (
-          <>
-            {" "}
-            · began <ClockTime at={since} />
-          </>
+          <span>
+            <Trans i18nKey="history.alert.began" components={{ when: <ClockTime at={since} /> }} />
+          </span>
         )}
-        {alert.count > 1 && ` · seen ${alert.count} times`}
+        {count > 1 && <span>{t("history.alert.seen", { count, number: count })}</span>}
       </p>
-      <Evidence data={alert.data} unfolded={!resolved} />
+      <Evidence kind={kind} data={data} unfolded={!resolved} />
     </Notice>
   );
 }

@@ -13,9 +13,9 @@ import css from "./device.module.css";
 import { MountingSection } from "./done/MountingSection";
 import { NumbersSection } from "./done/NumbersSection";
 import { PageHead } from "./head/PageHead";
-import { HistorySection } from "./history/HistorySection";
 import { LiveCard } from "./live/LiveCard";
 import { MountsSection } from "./MountsSection";
+import { Past } from "./Past";
 import { shownMounting } from "./shown";
 import { UncertaintySection } from "./uncertainty/UncertaintySection";
 import { VerificationSection } from "./verification/VerificationSection";
@@ -66,11 +66,11 @@ function Content({ name, device, installation }: ContentProps) {
             <MountsSection id={id} />
           </div>
         </div>
-        <HistorySection id={id} lastData={installation.last_data_at} />
         <div className={css.halves}>
           <AlertsSection id={id} open={installation.open_alerts} />
           {shown && <NumbersSection shown={shown} />}
         </div>
+        <Past id={id} lastData={installation.last_data_at} />
       </div>
       <Suspense fallback={null}>
         <Certificate name={name} device={device} installation={installation} />

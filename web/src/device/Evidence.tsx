@@ -1,18 +1,32 @@
-import { useMemo, useState } from "react";
-import css from "./device.module.css";
-import { EvidenceChart } from "./EvidenceChart";
-import { type AlertData, evidenceRows, evidenceSeries } from "./evidence";
+import { lazy, Suspense, useMemo, useState } from "react";
+import { t } from "../text";
+import { type AlertData, evidenceSeries } from "./evidence";
+import css from "./evidence.module.css";
+import { evidenceRows } from "./evidenceRows";
+
+const EvidenceChart = lazy(() => import("./EvidenceChart").then((m) => ({ default: m.EvidenceChart })));
+
+interface EvidenceProps {
+  /** what kind of alert it is; without it what was measured has a general name */
+  kind?: string;
+  data: AlertData;
+  unfolded: boolean;
+}
 
 /** What is behind an alert: the chart a test decided on, and the numbers, folded away once it is over. */
-export function Evidence({ data, unfolded }: { data: AlertData; unfolded: boolean }) {
+export function Evidence({ kind = "", data, unfolded }: EvidenceProps) {
   const series = useMemo(() => evidenceSeries(data), [data]);
   const [open, setOpen] = useState(unfolded && series !== null);
-  const rows = evidenceRows(data);
+  const rows = evidenceRows(data, kind);
   if (rows.length === 0) return null;
   return (
     <details className={css.evidence} open={open} onToggle={(event) => setOpen(event.currentTarget.open)}>
-      <summary>Evidence</summary>
-      {open && series && <EvidenceChart series={series} />}
+      <summary>{t("history.evidence.title")}</summary>
+      {open && series && (
+        <Suspense fallback={<div className={css.coming} />}>
+          <EvidenceChart series={series} />
+        </Suspense>
+      )}
       <dl>
         {rows.map(({ name, label, text }) => (
           <div key={name}>

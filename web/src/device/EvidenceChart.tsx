@@ -1,8 +1,9 @@
 import { useComputedColorScheme } from "@mantine/core";
 import { useEffect, useRef } from "react";
 import "uplot/dist/uPlot.min.css";
-import css from "./device.module.css";
+import { t } from "../text";
 import { type EvidenceSeries, evidenceText } from "./evidence";
+import css from "./evidence.module.css";
 import { evidencePlot } from "./evidencePlot";
 
 /** The statistic of a sequential test over time, and the value at which it decides. */
@@ -15,7 +16,7 @@ export function EvidenceChart({ series }: { series: EvidenceSeries }) {
 
   return (
     <figure className={css.chart}>
-      <figcaption>How much spoke for it, over time</figcaption>
+      <figcaption>{t("history.evidence.chart")}</figcaption>
       <div ref={element} role="img" aria-label={evidenceText(series)} />
     </figure>
   );

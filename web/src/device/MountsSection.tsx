@@ -1,54 +1,51 @@
-import { useMounts } from "../api/queries";
-import type { Mount } from "../api/types";
-import { ClockTime } from "../components/RelativeTime";
+import { Button } from "@mantine/core";
+import { useState } from "react";
+import { useMounts } from "../api/mounts";
 import { Section } from "../components/Section";
 import { Failed, Loading } from "../components/States";
-import { Pill } from "../components/Tone";
-import { fixed } from "../lib/format";
-import type { Tone } from "../lib/stages";
-import css from "./device.module.css";
+import { whole } from "../lib/format";
+import { t } from "../text";
+import { MountRow } from "./MountRow";
+import css from "./mounts.module.css";
 
-const STATUS: Record<Mount["status"], { word: string; tone: Tone }> = {
-  in_force: { word: "In force", tone: "good" },
-  suspect: { word: "Suspect", tone: "bad" },
-  superseded: { word: "Superseded", tone: "neutral" },
-};
+/** Shown before somebody asks for more. */
+const FEW = 3;
 
 /** Every mounting that was ever confirmed, newest first. */
 export function MountsSection({ id }: { id: string }) {
   const mounts = useMounts(id);
+  const [all, setAll] = useState(false);
+  const items = mounts.data?.pages.flatMap((page) => page.items) ?? [];
+  const shown = all ? items : items.slice(0, FEW);
+  const hidden = items.length - shown.length;
+  const what = t("history.mounts.the_mountings");
   return (
-    <Section title="Confirmed mountings">
-      {mounts.isPending && <Loading what="the mountings" />}
-      {mounts.isError && <Failed what="the mountings" error={mounts.error} retry={mounts.refetch} />}
-      {mounts.data?.items.length === 0 && <p className={css.quiet}>None so far.</p>}
+    <Section title={t("history.mounts.title")}>
+      {mounts.isPending && <Loading what={what} />}
+      {mounts.isError && <Failed what={what} error={mounts.error} retry={mounts.refetch} />}
+      {mounts.isSuccess && items.length === 0 && <p className={css.quiet}>{t("history.mounts.none")}</p>}
       <ol className={css.mounts} reversed>
-        {mounts.data?.items.map((mount) => (
+        {shown.map((mount) => (
           <li key={mount.id}>
-            <MountRow mount={mount} />
+            <MountRow id={id} mount={mount} />
           </li>
         ))}
       </ol>
+      {hidden > 0 && (
+        <Button variant="subtle" mt="sm" onClick={() => setAll(true)}>
+          {t("history.mounts.more", { count: hidden, number: whole(hidden) })}
+        </Button>
+      )}
+      {hidden === 0 && mounts.hasNextPage && (
+        <Button
+          variant="subtle"
+          mt="sm"
+          loading={mounts.isFetchingNextPage}
+          onClick={() => mounts.fetchNextPage()}
+        >
+          {t("history.mounts.older")}
+        </Button>
+      )}
     </Section>
-  );
-}
-
-function MountRow({ mount }: { mount: Mount }) {
-  const { word, tone } = STATUS[mount.status];
-  const { roll, pitch, yaw } = mount.angles_deg;
-  const error = mount.verification.error_mps;
-  return (
-    <>
-      <div className={css.mountHead}>
-        <b>
-          <ClockTime at={mount.confirmed_at} />
-        </b>
-        <Pill tone={tone}>{word}</Pill>
-      </div>
-      <div className={css.quiet}>
-        Roll {fixed(roll, 1)}°, pitch {fixed(pitch, 1)}°, yaw {fixed(yaw, 1)}°
-        {error !== null && ` · drive test ${Math.abs(error).toFixed(1)} m/s`}
-      </div>
-    </>
   );
 }

@@ -1,14 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { toTheSecond } from "../lib/time";
-import {
-  beginning,
-  evidenceRange,
-  evidenceRows,
-  evidenceSeries,
-  evidenceText,
-  labelled,
-  shortened,
-} from "./evidence";
+import { beginning, evidenceRange, evidenceSeries, evidenceText, shortened } from "./evidence";
 
 const FOUND = Date.parse("2025-11-22T10:08:30Z") / 1000;
 const MOVED = {
@@ -69,40 +61,12 @@ it.each([
   expect([least, most]).toEqual([low, expect.closeTo(high)]);
 });
 
-it("tells what is known in words, a line each", () => {
-  const told = Object.fromEntries(evidenceRows(MOVED).map(({ label, text }) => [label, text]));
-  expect(told).toMatchObject({
-    session: "a",
-    "found, log time": "510 s",
-    "began, log time": "492 s",
-    mount: "3",
-    angle: "14°",
-    "turned about": "an axis pointing up (0.00, \u22120.10, 1.00)",
-  });
-  expect(told.began).toContain("22 Nov 2025");
-  expect(told).not.toHaveProperty("fault");
-  expect(told).not.toHaveProperty("evidence");
-});
-
-it("shows what it does not understand as it is", () =>
-  expect(evidenceRows({ axis: [1, 2], since: "long ago" }).map(({ text }) => text)).toEqual([
-    "1, 2",
-    "long ago",
-  ]));
-
 it("knows when it began, where that is known", () => {
   expect(beginning(MOVED)).toBe(MOVED.since);
   expect(beginning({ since: null })).toBeNull();
   expect(beginning({ since: "long ago" })).toBeNull();
   expect(beginning({})).toBeNull();
 });
-
-it.each([
-  ["angle_deg", { label: "angle", unit: "°" }],
-  ["speed_error_mps", { label: "speed error", unit: " m/s" }],
-  ["reason", { label: "reason", unit: "" }],
-  ["s", { label: "s", unit: "" }],
-])("%s is labelled", (name, expected) => expect(labelled(name)).toEqual(expected));
 
 it.each([
   [83.21745, "83.22"],

@@ -1,7 +1,10 @@
 /** The chart of what a sequential test decided on. */
 import uPlot from "uplot";
+import { significant } from "../lib/format";
+import { tickTimes } from "../lib/time";
+import { t } from "../text";
 import { type EvidenceSeries, evidenceRange, shortened } from "./evidence";
-import { look, plotIn, timeTexts, withAlpha } from "./plot";
+import { look, plotIn, withAlpha } from "./plot";
 
 /** Pixels. */
 const HEIGHT = 150;
@@ -29,8 +32,8 @@ function options(element: HTMLElement, series: EvidenceSeries): Omit<uPlot.Optio
     scales: { x: { time: true }, y: { range: evidenceRange(series) } },
     padding: [6, 28, 0, 0],
     axes: [
-      { ...axis, size: 24, space: 70, values: (_, ticks, __, ___, step) => timeTexts(ticks, step) },
-      { ...axis, size: 44, space: 28 },
+      { ...axis, size: 24, space: 70, values: (_, ticks, __, ___, step) => tickTimes(ticks, step) },
+      { ...axis, size: 44, space: 28, values: (_, ticks) => ticks.map((tick) => significant(tick, 4)) },
     ],
     series: [
       {},
@@ -57,7 +60,7 @@ function label(plot: uPlot, element: HTMLElement, { threshold, since }: Evidence
   ctx.textBaseline = "bottom";
   ctx.fillStyle = limit;
   const y = plot.valToPos(threshold, "y", true) - 3 * pixel;
-  ctx.fillText(`decides at ${shortened(threshold)}`, bbox.left + 4 * pixel, y);
+  ctx.fillText(t("history.evidence.decides", { threshold: shortened(threshold) }), bbox.left + 4 * pixel, y);
   if (since !== null) mark(plot, plot.valToPos(since, "x", true), ink, pixel);
   ctx.restore();
 }
@@ -74,5 +77,5 @@ function mark({ ctx, bbox }: uPlot, x: number, ink: string, pixel: number): void
   ctx.stroke();
   const late = x > bbox.left + bbox.width / 2;
   ctx.textAlign = late ? "right" : "left";
-  ctx.fillText("began", x + (late ? -4 : 4) * pixel, bbox.top + bbox.height - 4 * pixel);
+  ctx.fillText(t("history.evidence.began"), x + (late ? -4 : 4) * pixel, bbox.top + bbox.height - 4 * pixel);
 }

@@ -40,6 +40,25 @@ export function toTheSecond(time: Date): string {
   return format({ timeStyle: "medium" }).format(time);
 }
 
+/** How the marks of a time axis are written whose steps (s) are shorter than this. */
+const TICKS: readonly [number, Intl.DateTimeFormatOptions][] = [
+  [60, { hour: "2-digit", minute: "2-digit", second: "2-digit" }],
+  [86_400, { hour: "2-digit", minute: "2-digit" }],
+  [25 * 86_400, { day: "numeric", month: "short" }],
+  [Number.POSITIVE_INFINITY, { month: "short", year: "numeric" }],
+];
+const DATE = { day: "numeric", month: "short" } as const;
+
+/** Marks of a time axis (s since 1970), as fine as the steps between them; midnight shows the date. */
+export function tickTimes(ticks: readonly number[], step: number): string[] {
+  const usual = TICKS.find(([longest]) => step < longest)?.[1] ?? DATE;
+  return ticks.map((tick) => {
+    const time = new Date(tick * 1000);
+    const midnight = time.getHours() + time.getMinutes() + time.getSeconds() === 0;
+    return format(midnight && step < 86_400 ? DATE : usual).format(time);
+  });
+}
+
 /** Seconds as people say them: "23 s", "4 min", "2 h 5 min". */
 export function duration(seconds: number): string {
   if (seconds < 60) return `${Math.floor(seconds)} s`;

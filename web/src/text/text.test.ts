@@ -19,7 +19,7 @@ const places = (text: string) =>
   [...text.matchAll(/\{\{.*?\}\}|<\/?\w+ ?\/?>/g)].map(([place]) => place).sort();
 
 /** The same in both languages: names, units, words that Italian has taken over. */
-const SAME = /^(–|No|Password|Webhook|API|Online|CSV|GPS|[^a-z]*|.*\{\{.*\}\}[^a-z]*)$/i;
+const SAME = /^(–|No|Password|Webhook|API|Online|CSV|GPS|\d+ h|[^a-z]*|.*\{\{.*\}\}[^a-z]*)$/i;
 
 const english = flat(en);
 const translated = flat(italian);

@@ -3,54 +3,56 @@ import { useEffect, useRef, useState } from "react";
 import type uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { wrap } from "../../lib/angles";
-import { fixed } from "../../lib/format";
+import { degreesText, fixed } from "../../lib/format";
 import { onTheClock } from "../../lib/time";
-import { type Angle, type AngleHistory, verticalRange } from "./history";
+import { t } from "../../text";
+import { type Angle, type AngleHistory, extentOf, toldRow, verticalRange } from "./history";
 import css from "./history.module.css";
+import type { Mark } from "./marks";
 import { makePlot } from "./plot";
+import type { Span } from "./span";
+import type { TimeAxis } from "./timeAxis";
 
-const WORD: Record<Angle, { word: string; axis: "x" | "y" | "z" }> = {
-  roll: { word: "Roll", axis: "x" },
-  pitch: { word: "Pitch", axis: "y" },
-  yaw: { word: "Yaw", axis: "z" },
-};
+const AXIS: Record<Angle, "x" | "y" | "z"> = { roll: "x", pitch: "y", yaw: "z" };
 
 interface AngleChartProps {
   angle: Angle;
   history: AngleHistory;
-  onZoom: (from: number, to: number) => void;
-  /** the lowest chart tells the time */
-  lowest: boolean;
+  marks: readonly Mark[];
+  time: TimeAxis;
+  /** where the time axis rests; null: all that is loaded is shown */
+  view: Span | null;
+  first: boolean;
+  last: boolean;
+  onReset: () => void;
 }
 
 /** One angle over time with its band of one sigma; the value under the cursor, or the last one, stands above it. */
-export function AngleChart({ angle, history, onZoom, lowest }: AngleChartProps) {
+export function AngleChart(props: AngleChartProps) {
+  const { angle, history, view } = props;
   const [row, setRow] = useState<number | null>(null);
-  const element = usePlot({ angle, history, onZoom, lowest }, setRow);
-  const text = reading(history, angle, row);
-  const { word, axis } = WORD[angle];
+  const element = usePlot(props, setRow);
+  const shown = reading(history, angle, row, view);
+  const last = reading(history, angle, null, view);
+  const word = t(`common.${angle}`);
   return (
-    <figure className={css.chart} style={{ "--angle": `var(--livella-${axis})` }}>
+    <figure className={css.chart} style={{ "--angle": `var(--livella-${AXIS[angle]})` }}>
       <figcaption>
-        <i aria-hidden /> <b>{word}</b> {text.value} <span>{text.when}</span>
+        <i aria-hidden /> <b>{word}</b> {shown.value} <span>{shown.when}</span>
       </figcaption>
-      <div
-        ref={element}
-        role="img"
-        aria-label={`${word} over time; last: ${reading(history, angle, null).value}`}
-      />
+      <div ref={element} role="img" aria-label={t("history.over_time", { angle: word, value: last.value })} />
     </figure>
   );
 }
 
 function usePlot(
-  { angle, history, onZoom, lowest }: AngleChartProps,
+  { angle, history, marks, time, view, first, last, onReset }: AngleChartProps,
   onCursor: (row: number | null) => void,
 ) {
   const element = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot>(null);
-  const handlers = useRef({ onCursor, onZoom });
-  handlers.current = { onCursor, onZoom };
+  const now = useRef({ marks, onReset });
+  now.current = { marks, onReset };
   const scheme = useComputedColorScheme("light");
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: the colours are read again when the scheme changes
@@ -59,33 +61,45 @@ function usePlot(
     if (!target) return;
     const [made, remove] = makePlot({
       element: target,
-      colour: getComputedStyle(target).getPropertyValue(`--livella-${WORD[angle].axis}`),
-      timed: lowest,
-      onCursor: (found) => handlers.current.onCursor(found),
-      onZoom: (from, to) => handlers.current.onZoom(from, to),
+      colour: getComputedStyle(target).getPropertyValue(`--livella-${AXIS[angle]}`),
+      time,
+      place: { first, last },
+      marks: () => now.current.marks,
+      onCursor,
+      onReset: () => now.current.onReset(),
     });
     plot.current = made;
     return remove;
-  }, [angle, lowest, scheme]);
+  }, [angle, time, first, last, scheme]);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: a chart made anew needs its data again
   useEffect(() => {
     const { value, low, high } = history.angles[angle];
-    const [min, max] = verticalRange(history, angle);
+    const [min, max] = verticalRange(history, angle, view);
+    const span = time.chosen ?? extentOf(history);
     plot.current?.batch(() => {
-      plot.current?.setData([history.time, value, low, high]);
+      plot.current?.setData([history.time, value, low, high], false);
+      if (span) plot.current?.setScale("x", span);
       plot.current?.setScale("y", { min, max });
     });
-  }, [angle, history, lowest, scheme]);
+  }, [angle, history, marks, view, time, first, last, scheme]);
 
   return element;
 }
 
-function reading(history: AngleHistory, angle: Angle, row: number | null): { value: string; when: string } {
+function reading(
+  history: AngleHistory,
+  angle: Angle,
+  cursor: number | null,
+  view: Span | null,
+): { value: string; when: string } {
   const { value, high } = history.angles[angle];
-  const at = row !== null && value[row] != null ? row : value.findLastIndex((v) => v !== null);
-  const v = value[at];
-  if (v === null || v === undefined) return { value: "–", when: "" };
-  const when = row === at ? onTheClock(new Date((history.time[at] ?? 0) * 1000)) : "";
-  return { value: `${fixed(wrap(v), 1)}° ± ${((high[at] ?? v) - v).toFixed(1)}°`, when };
+  const row = toldRow(history, angle, cursor, view);
+  const v = value[row];
+  if (v === null || v === undefined) return { value: t("common.unknown"), when: "" };
+  const sigma = degreesText((high[row] ?? v) - v);
+  return {
+    value: t("history.value", { degrees: `${fixed(wrap(v), 1)}°`, sigma }),
+    when: row === cursor ? onTheClock(new Date((history.time[row] ?? 0) * 1000)) : "",
+  };
 }

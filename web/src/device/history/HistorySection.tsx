@@ -1,95 +1,94 @@
-import { Button, SegmentedControl } from "@mantine/core";
-import { ChartLine, ZoomOut } from "lucide-react";
-import { useMemo, useState } from "react";
-import type { TimeRange } from "../../api/keys";
-import { useEstimates } from "../../api/queries";
+import { SegmentedControl } from "@mantine/core";
+import { ChartLine } from "lucide-react";
+import { useMemo } from "react";
+import { useEstimates } from "../../api/history";
+import { useMounts } from "../../api/mounts";
+import { useDeviceAlerts } from "../../api/queries";
+import { useMay } from "../../api/session";
+import type { Estimates } from "../../api/types";
 import { Section } from "../../components/Section";
 import { Empty, Failed, Loading } from "../../components/States";
-import { AngleChart } from "./AngleChart";
-import { ANGLES, angleHistory, RANGES, type Range, rangeStart } from "./history";
+import { t } from "../../text";
+import { Charts } from "./Charts";
+import { Events } from "./Events";
+import { angleHistory, extentOf } from "./history";
 import css from "./history.module.css";
+import { type Mark, marksOf } from "./marks";
+import { RANGES, type Range } from "./span";
+import { Toolbar } from "./Toolbar";
+import { type HistoryWindow, useLimits, useWindow } from "./useWindow";
 
 interface HistoryProps {
   id: string;
   lastData: string | null;
 }
 
-/** How the angles came about: three charts with one time axis. */
+/** How the angles came about: three charts with one time axis, and what happened meanwhile. */
 export function HistorySection({ id, lastData }: HistoryProps) {
-  const [range, setRange] = useState<Range>("Hour");
-  const [zoomed, setZoomed] = useState<TimeRange | null>(null);
-  const window = zoomed ?? { from: rangeStart(range, lastData), to: null };
-  const zoom = (from: number, to: number) => setZoomed({ from: moment(from), to: moment(to) });
-  const controls = (
-    <div className={css.controls}>
-      {zoomed && (
-        <Button
-          size="sm"
-          variant="light"
-          leftSection={<ZoomOut size={18} aria-hidden />}
-          onClick={() => setZoomed(null)}
-        >
-          Reset zoom
-        </Button>
-      )}
-      <SegmentedControl
-        aria-label="Time span"
-        data={[...RANGES]}
-        value={range}
-        onChange={(value) => {
-          setRange(value as Range);
-          setZoomed(null);
-        }}
-      />
-    </div>
-  );
+  const window = useWindow(lastData);
   return (
-    <Section title="Angle history" aside={controls} className="no-print">
-      <Charts id={id} window={window} onZoom={zoom} />
+    <Section
+      title={t("history.title")}
+      aside={<Ranges chosen={window.range} choose={window.choose} />}
+      className="no-print"
+    >
+      <History id={id} window={window} />
     </Section>
   );
 }
 
-function moment(seconds: number): string {
-  return new Date(seconds * 1000).toISOString();
+function Ranges({ chosen, choose }: { chosen: Range; choose: (range: Range) => void }) {
+  const data = RANGES.map((value) => ({
+    value,
+    label: (
+      <>
+        <span aria-hidden>{t(`history.${value}.short`)}</span>
+        <span className="visually-hidden">{t(`history.${value}.long`)}</span>
+      </>
+    ),
+  }));
+  return <SegmentedControl aria-label={t("history.range")} data={data} value={chosen} onChange={choose} />;
 }
 
-function Charts({
-  id,
-  window,
-  onZoom,
-}: {
-  id: string;
-  window: TimeRange;
-  onZoom: (from: number, to: number) => void;
-}) {
-  const estimates = useEstimates(id, window);
-  const history = useMemo(() => estimates.data && angleHistory(estimates.data), [estimates.data]);
-  if (estimates.isError)
-    return <Failed what="the history" error={estimates.error} retry={estimates.refetch} />;
-  if (!history) return <Loading what="the history" lines={6} />;
-  if (history.time.length === 0) {
+function History({ id, window }: { id: string; window: HistoryWindow }) {
+  const estimates = useEstimates(id, window.wanted);
+  const what = t("history.the_history");
+  if (estimates.isError) return <Failed what={what} error={estimates.error} retry={estimates.refetch} />;
+  if (!estimates.data) return <Loading what={what} lines={12} />;
+  if (estimates.data.time.length === 0 && window.view === null) {
     return (
-      <Empty icon={ChartLine} title={window.to ? "No angles in this span" : "No angles yet"}>
-        The curve begins with the first estimate.
+      <Empty icon={ChartLine} title={t("history.no_angles")}>
+        {t("history.begins")}
       </Empty>
     );
   }
+  return <Loaded id={id} window={window} estimates={estimates.data} />;
+}
+
+function Loaded({ id, window, estimates }: { id: string; window: HistoryWindow; estimates: Estimates }) {
+  const history = useMemo(() => angleHistory(estimates), [estimates]);
+  const marks = useMarks(id, estimates);
+  const extent = useMemo(() => extentOf(history), [history]);
+  useLimits(id, window.time, extent);
   return (
-    <div className={css.charts}>
-      {ANGLES.map((angle) => (
-        <AngleChart
-          key={angle}
-          angle={angle}
-          history={history}
-          onZoom={onZoom}
-          lowest={angle === ANGLES.at(-1)}
-        />
-      ))}
-      <p className={css.note}>
-        The band is one standard deviation. Drag across a chart to zoom. Near a pitch of ±90° roll and yaw are
-        not unique.
-      </p>
+    <div className={css.all}>
+      <Toolbar id={id} window={window} />
+      <Charts history={history} marks={marks} window={window} points={estimates.time.length} />
+      <Events marks={marks} span={window.view ?? extent} time={window.time} />
     </div>
+  );
+}
+
+function useMarks(id: string, estimates: Estimates): Mark[] {
+  const mounts = useMounts(id).data;
+  const alerts = useDeviceAlerts(id, useMay("manager")).data;
+  return useMemo(
+    () =>
+      marksOf({
+        estimates,
+        mounts: mounts?.pages.flatMap(({ items }) => items) ?? [],
+        alerts: alerts?.items ?? [],
+      }),
+    [estimates, mounts, alerts],
   );
 }

@@ -1,26 +1,6 @@
 import { describe, expect, it } from "vitest";
-import type { Estimates } from "../../api/types";
-import { angleHistory, rangeStart, verticalRange } from "./history";
-
-const START = Date.parse("2025-11-22T10:00:00Z") / 1000;
-
-function estimates(
-  rows: { t: number; yaw: number; sigma?: number; session?: string; stage?: "aligning" }[],
-): Estimates {
-  const fill = <T>(value: T) => rows.map(() => value);
-  return {
-    session: rows.map(({ session }) => session ?? "s"),
-    t: rows.map(({ t }) => t),
-    time: rows.map(({ t }) => new Date((START + t) * 1000).toISOString()),
-    quaternion: fill([1, 0, 0, 0]),
-    angles_deg: { roll: fill(0), pitch: fill(1), yaw: rows.map(({ yaw }) => yaw) },
-    sigma_deg: rows.map(({ sigma }) => [0.1, 0.2, sigma ?? 0.5]),
-    stage: rows.map(({ stage }) => stage ?? "settling"),
-    stable: fill(false),
-    reliable: fill(false),
-    progress: fill(0.5),
-  };
-}
+import { angleHistory, extentOf, toldRow, verticalRange } from "./history";
+import { estimates, START } from "./sample";
 
 describe("angleHistory", () => {
   it("draws no jump where yaw passes 180 degrees, and the band goes along", () => {
@@ -36,7 +16,7 @@ describe("angleHistory", () => {
   });
 
   it("takes each angle's own sigma", () => {
-    const { angles } = angleHistory(estimates([{ t: 0, yaw: 0 }]));
+    const { angles } = angleHistory(estimates([{ t: 0 }]));
     expect(angles.roll.high).toEqual([0.1]);
     expect(angles.pitch.high).toEqual([1.2]);
   });
@@ -59,12 +39,20 @@ describe("angleHistory", () => {
     expect(angleHistory(thinned).angles.yaw.value).not.toContain(null);
   });
 
-  it("takes no rows", () => expect(angleHistory(estimates([])).time).toEqual([]));
+  it("takes no rows", () => {
+    const nothing = angleHistory(estimates([]));
+    expect(nothing.time).toEqual([]);
+    expect(extentOf(nothing)).toBeNull();
+  });
 });
 
 describe("verticalRange", () => {
-  const range = (rows: Parameters<typeof estimates>[0]) =>
-    verticalRange(angleHistory(estimates(rows)), "yaw");
+  const range = (rows: Parameters<typeof estimates>[0], span: [number, number] | null = null) =>
+    verticalRange(
+      angleHistory(estimates(rows)),
+      "yaw",
+      span && { min: START + span[0], max: START + span[1] },
+    );
 
   it("shows at least four degrees", () => {
     const [low, high] = range([{ t: 0, yaw: 50, sigma: 0.1 }]);
@@ -84,15 +72,29 @@ describe("verticalRange", () => {
   it("shows them while there are no others", () => {
     expect(range([{ t: 0, yaw: -80, sigma: 20, stage: "aligning" }])[0]).toBeLessThan(-100);
   });
+
+  it("is that of what is looked at", () => {
+    const rows = [
+      { t: 0, yaw: 10 },
+      { t: 50, yaw: 100 },
+    ];
+    expect(range(rows)[1]).toBeGreaterThan(90);
+    expect(range(rows, [0, 20])[1]).toBeLessThan(20);
+    expect(range(rows, [20, 30])).toEqual([-2, 2]);
+  });
 });
 
-describe("rangeStart", () => {
-  it("counts back from the last data, on the minute", () => {
-    expect(rangeStart("Hour", "2025-11-22T10:00:59Z")).toBe("2025-11-22T09:00:00.000Z");
-    expect(rangeStart("Hour", "2025-11-22T10:00:01Z")).toBe("2025-11-22T09:00:00.000Z");
+describe("toldRow", () => {
+  const history = angleHistory(estimates([{ t: -5 }, { t: 0 }, { t: 5 }, { t: 605 }]));
+  it("is the one under the cursor", () => expect(toldRow(history, "yaw", 1, null)).toBe(1));
+  it("is the last one, when the cursor is in a gap or away", () => {
+    expect(history.angles.yaw.value[3]).toBeNull();
+    expect(toldRow(history, "yaw", 3, null)).toBe(4);
+    expect(toldRow(history, "yaw", null, null)).toBe(4);
   });
-  it("has no beginning for everything, or for nothing", () => {
-    expect(rangeStart("All", "2025-11-22T10:00:00Z")).toBeNull();
-    expect(rangeStart("Day", null)).toBeNull();
-  });
+  it("is the last one of what is looked at", () =>
+    expect(toldRow(history, "yaw", null, { min: START, max: START + 60 })).toBe(2));
 });
+
+it("shows a single estimate in the middle", () =>
+  expect(extentOf(angleHistory(estimates([{ t: 0 }])))).toEqual({ min: START - 30, max: START + 30 }));

@@ -2,20 +2,27 @@
 import type uPlot from "uplot";
 import { wrap } from "../../lib/angles";
 import { fixed } from "../../lib/format";
-import { look, plotIn, timeTexts, withAlpha } from "../plot";
+import { tickTimes } from "../../lib/time";
+import { look, plotIn, withAlpha } from "../plot";
+import { drawMarks, inkOf } from "./drawMarks";
+import { listen } from "./gestures";
+import type { Mark } from "./marks";
+import type { TimeAxis } from "./timeAxis";
 
 export interface PlotSettings {
   element: HTMLElement;
   /** "#rrggbb" */
   colour: string;
-  /** the time axis is drawn */
-  timed: boolean;
+  time: TimeAxis;
+  /** the uppermost chart has the flags of the marks, the lowest one tells the time */
+  place: { first: boolean; last: boolean };
+  marks: () => readonly Mark[];
   onCursor: (row: number | null) => void;
-  onZoom: (from: number, to: number) => void;
+  onReset: () => void;
 }
 
 /** Pixels. */
-const HEIGHT = { chart: 110, axis: 24 };
+const HEIGHT = { chart: 110, axis: 24, flags: 18 };
 /** Charts with this key move their cursors together. */
 const SYNC = "livella-angles";
 /** Pixels; a shorter drag is a click. */
@@ -23,36 +30,38 @@ const SHORTEST_DRAG = 8;
 
 /** Make the chart of an angle; gives it, and the function that takes it away. */
 export function makePlot(settings: PlotSettings): [uPlot, () => void] {
-  return plotIn(settings.element, plotOptions(settings));
+  const [plot, remove] = plotIn(settings.element, plotOptions(settings));
+  const leave = settings.time.add(plot);
+  const deaf = listen(plot, settings.time);
+  return [
+    plot,
+    () => {
+      deaf();
+      leave();
+      remove();
+    },
+  ];
 }
 
-function plotOptions({
-  element,
-  colour,
-  timed,
-  onCursor,
-  onZoom,
-}: PlotSettings): Omit<uPlot.Options, "width"> {
-  const axisHeight = timed ? HEIGHT.axis : 0;
+function plotOptions(settings: PlotSettings): Omit<uPlot.Options, "width"> {
+  const { element, colour, time, place, onCursor } = settings;
+  const axisHeight = place.last ? HEIGHT.axis : 0;
+  const flags = place.first ? HEIGHT.flags : 0;
   const { axis } = look(element);
+  const ink = inkOf(element);
   const edge: uPlot.Series = { stroke: "transparent", points: { show: false } };
   return {
-    height: HEIGHT.chart + axisHeight,
+    height: HEIGHT.chart + axisHeight + flags,
     legend: { show: false },
-    cursor: {
-      sync: { key: SYNC },
-      drag: { x: true, y: false, setScale: false },
-      points: { size: 7 },
-      y: false,
-    },
-    scales: { x: { time: true } },
-    padding: [6, 12, 6, 0],
+    cursor: cursor(settings),
+    scales: { x: { time: true, auto: false }, y: { auto: false } },
+    padding: [6 + flags, 12, 6, 0],
     axes: [
       {
         ...axis,
         size: axisHeight,
         space: 70,
-        values: (_, ticks, __, ___, step) => (timed ? timeTexts(ticks, step) : ticks.map(() => "")),
+        values: (_, ticks, __, ___, step) => (place.last ? tickTimes(ticks, step) : ticks.map(() => "")),
       },
       { ...axis, size: 52, space: 24, values: (_, ticks) => ticks.map(tickText) },
     ],
@@ -60,7 +69,28 @@ function plotOptions({
     bands: [{ series: [3, 2], fill: withAlpha(colour, 0.18) }],
     hooks: {
       setCursor: [(plot) => onCursor(plot.cursor.idx ?? null)],
-      setSelect: [(plot) => zoom(plot, onZoom)],
+      setSelect: [(plot) => zoom(plot, time)],
+      draw: [(plot) => drawMarks(plot, settings.marks(), ink, place.first)],
+    },
+  };
+}
+
+/** A drag zooms, unless shift is held: then it moves, which `gestures.ts` does. */
+function cursor({ onReset }: PlotSettings): uPlot.Cursor {
+  return {
+    sync: { key: SYNC },
+    drag: { x: true, y: false, setScale: false },
+    points: { size: 7 },
+    y: false,
+    bind: {
+      mousedown: (_, __, begin) => (event) => {
+        if (!event.shiftKey) begin(event);
+        return null;
+      },
+      dblclick: () => () => {
+        onReset();
+        return null;
+      },
     },
   };
 }
@@ -71,9 +101,9 @@ function tickText(tick: number): string {
   return `${fixed(degrees, Number.isInteger(degrees) ? 0 : 1)}°`;
 }
 
-function zoom(plot: uPlot, onZoom: PlotSettings["onZoom"]): void {
+function zoom(plot: uPlot, time: TimeAxis): void {
   const { left, width } = plot.select;
   if (width < SHORTEST_DRAG) return;
-  onZoom(plot.posToVal(left, "x"), plot.posToVal(left + width, "x"));
+  time.look({ min: plot.posToVal(left, "x"), max: plot.posToVal(left + width, "x") });
   plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
 }
