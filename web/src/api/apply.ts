@@ -4,7 +4,7 @@ import { applyAlert } from "./applyAlert";
 import { deviceInLists, installationInLists } from "./deviceLists";
 import { keys } from "./keys";
 import { mountChanged, newer, withInstallation } from "./merge";
-import type { Alert, Device, DeviceChange, Installation, Page } from "./types";
+import type { Alert, Device, DeviceChange, Installation } from "./types";
 
 export type LiveEvent =
   | { type: "installation"; data: Installation }

@@ -1,11 +1,5 @@
 /** What the page reads and does, as TanStack queries. Live updates come in through `live.ts`. */
-import {
-  keepPreviousData,
-  replaceEqualDeep,
-  useMutation,
-  useQuery,
-  useQueryClient,
-} from "@tanstack/react-query";
+import { replaceEqualDeep, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { answer, http } from "./http";
 import { keys } from "./keys";
 import { newer } from "./merge";

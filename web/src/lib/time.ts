@@ -40,6 +40,12 @@ export function toTheSecond(time: Date): string {
   return format({ timeStyle: "medium" }).format(time);
 }
 
+/** "22 Nov 2025, 10:20 – 11:40" on the reader's clock; with seconds where it is short. */
+export function between(from: Date, to: Date): string {
+  const timeStyle = to.getTime() - from.getTime() < 600_000 ? "medium" : "short";
+  return format({ dateStyle: "medium", timeStyle }).formatRange(from, to);
+}
+
 /** How the marks of a time axis are written whose steps (s) are shorter than this. */
 const TICKS: readonly [number, Intl.DateTimeFormatOptions][] = [
   [60, { hour: "2-digit", minute: "2-digit", second: "2-digit" }],

@@ -51,8 +51,9 @@ function usePlot(
 ) {
   const element = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot>(null);
-  const now = useRef({ marks, onReset });
-  now.current = { marks, onReset };
+  const band = history.angles[angle];
+  const now = useRef({ marks, band, onReset });
+  now.current = { marks, band, onReset };
   const scheme = useComputedColorScheme("light");
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: the colours are read again when the scheme changes
@@ -65,6 +66,7 @@ function usePlot(
       time,
       place: { first, last },
       marks: () => now.current.marks,
+      band: () => now.current.band,
       onCursor,
       onReset: () => now.current.onReset(),
     });
@@ -74,11 +76,10 @@ function usePlot(
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: a chart made anew needs its data again
   useEffect(() => {
-    const { value, low, high } = history.angles[angle];
     const [min, max] = verticalRange(history, angle, view);
     const span = time.chosen ?? extentOf(history);
     plot.current?.batch(() => {
-      plot.current?.setData([history.time, value, low, high], false);
+      plot.current?.setData([history.time, history.angles[angle].value], false);
       if (span) plot.current?.setScale("x", span);
       plot.current?.setScale("y", { min, max });
     });

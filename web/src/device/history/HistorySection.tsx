@@ -8,6 +8,7 @@ import { useMay } from "../../api/session";
 import type { Estimates } from "../../api/types";
 import { Section } from "../../components/Section";
 import { Empty, Failed, Loading } from "../../components/States";
+import { between } from "../../lib/time";
 import { t } from "../../text";
 import { Charts } from "./Charts";
 import { Events } from "./Events";
@@ -69,12 +70,18 @@ function Loaded({ id, window, estimates }: { id: string; window: HistoryWindow; 
   const history = useMemo(() => angleHistory(estimates), [estimates]);
   const marks = useMarks(id, estimates);
   const extent = useMemo(() => extentOf(history), [history]);
-  useLimits(id, window.time, extent);
+  const shown = window.view ?? extent;
+  useLimits(id, window, extent);
   return (
     <div className={css.all}>
       <Toolbar id={id} window={window} />
+      {shown && (
+        <p role="status" className={css.shown}>
+          {between(new Date(shown.min * 1000), new Date(shown.max * 1000))}
+        </p>
+      )}
       <Charts history={history} marks={marks} window={window} points={estimates.time.length} />
-      <Events marks={marks} span={window.view ?? extent} time={window.time} />
+      <Events marks={marks} span={shown} time={window.time} />
     </div>
   );
 }

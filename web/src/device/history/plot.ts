@@ -4,6 +4,7 @@ import { wrap } from "../../lib/angles";
 import { fixed } from "../../lib/format";
 import { tickTimes } from "../../lib/time";
 import { look, plotIn, withAlpha } from "../plot";
+import { drawBand, type Edges } from "./drawBand";
 import { drawMarks, inkOf } from "./drawMarks";
 import { listen } from "./gestures";
 import type { Mark } from "./marks";
@@ -17,6 +18,7 @@ export interface PlotSettings {
   /** the uppermost chart has the flags of the marks, the lowest one tells the time */
   place: { first: boolean; last: boolean };
   marks: () => readonly Mark[];
+  band: () => Edges;
   onCursor: (row: number | null) => void;
   onReset: () => void;
 }
@@ -27,6 +29,8 @@ const HEIGHT = { chart: 110, axis: 24, flags: 18 };
 const SYNC = "livella-angles";
 /** Pixels; a shorter drag is a click. */
 const SHORTEST_DRAG = 8;
+/** Pixels. */
+const LINE = { thick: 2, thin: 1 };
 
 /** Make the chart of an angle; gives it, and the function that takes it away. */
 export function makePlot(settings: PlotSettings): [uPlot, () => void] {
@@ -49,7 +53,7 @@ function plotOptions(settings: PlotSettings): Omit<uPlot.Options, "width"> {
   const flags = place.first ? HEIGHT.flags : 0;
   const { axis } = look(element);
   const ink = inkOf(element);
-  const edge: uPlot.Series = { stroke: "transparent", points: { show: false } };
+  const soft = withAlpha(colour, 0.18);
   return {
     height: HEIGHT.chart + axisHeight + flags,
     legend: { show: false },
@@ -65,14 +69,22 @@ function plotOptions(settings: PlotSettings): Omit<uPlot.Options, "width"> {
       },
       { ...axis, size: 52, space: 24, values: (_, ticks) => ticks.map(tickText) },
     ],
-    series: [{}, { stroke: colour, width: 2, points: { show: false } }, edge, edge],
-    bands: [{ series: [3, 2], fill: withAlpha(colour, 0.18) }],
+    series: [{}, { stroke: colour, width: LINE.thick, points: { show: false } }],
     hooks: {
       setCursor: [(plot) => onCursor(plot.cursor.idx ?? null)],
       setSelect: [(plot) => zoom(plot, time)],
+      drawClear: [thin],
+      drawAxes: [(plot) => drawBand(plot, settings.band(), soft)],
       draw: [(plot) => drawMarks(plot, settings.marks(), ink, place.first)],
     },
   };
+}
+
+/** A dense curve is drawn thin: it shows more, and thick it would take most of the time of a frame. */
+function thin(plot: uPlot): void {
+  const [time, angle] = plot.series;
+  const [from, to] = time?.idxs ?? [0, 0];
+  if (angle) angle.width = to - from > plot.over.clientWidth ? LINE.thin : LINE.thick;
 }
 
 /** A drag zooms, unless shift is held: then it moves, which `gestures.ts` does. */

@@ -5,9 +5,13 @@ import { inside, lengthOf, type Span } from "./span";
 /** ms without a move: it rests */
 const REST = 200;
 
+const beyond = (span: Span, loaded: Span): boolean => span.min < loaded.min || span.max > loaded.max;
+
 export class TimeAxis {
   /** what there is to look at */
   limits: Span | null = null;
+  /** what has been asked for */
+  loaded: Span | null = null;
   onRest: (span: Span) => void = () => {};
   /** what is looked at; null: all that is loaded */
   chosen: Span | null = null;
@@ -38,8 +42,7 @@ export class TimeAxis {
       return false;
     this.chosen = span;
     this.frame ??= requestAnimationFrame(() => this.draw());
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.onRest(span), REST);
+    this.report(span);
     return true;
   }
 
@@ -50,9 +53,23 @@ export class TimeAxis {
   }
 
   stop(): void {
-    clearTimeout(this.timer);
+    this.forget();
     if (this.frame !== undefined) cancelAnimationFrame(this.frame);
     this.frame = undefined;
+  }
+
+  /** Tell when it rests; and on the way, when it comes to where nothing is loaded yet. */
+  private report(span: Span): void {
+    if (!this.loaded || !beyond(span, this.loaded)) this.forget();
+    this.timer ??= setTimeout(() => {
+      this.timer = undefined;
+      if (this.chosen) this.onRest(this.chosen);
+    }, REST);
+  }
+
+  private forget(): void {
+    clearTimeout(this.timer);
+    this.timer = undefined;
   }
 
   private draw(): void {

@@ -48,11 +48,12 @@ function isPast({ max }: Span, lastData: string | null): boolean {
 }
 
 /** Let the time axis move as far as there are estimates: those of all times, and those that have come in since. */
-export function useLimits(id: string, time: TimeAxis, loaded: Span | null): void {
-  const ends = useEnds(id, loaded !== null);
+export function useLimits(id: string, { time, view }: HistoryWindow, extent: Span | null): void {
+  const ends = useEnds(id, extent !== null);
   const known = ends.data?.time.map((moment) => Date.parse(moment) / 1000) ?? [];
-  const all = loaded ? [...known, loaded.min, loaded.max] : known;
+  const all = extent ? [...known, extent.min, extent.max] : known;
   useEffect(() => {
     time.limits = all.length > 0 ? { min: Math.min(...all), max: Math.max(...all) } : null;
+    time.loaded = view ? loadedFor(view) : extent;
   });
 }

@@ -1,17 +1,24 @@
 import { Suspense, useMemo } from "react";
-import { useEstimates } from "../../api/queries";
+import { useEstimates } from "../../api/history";
 import type { Installation } from "../../api/types";
 import { optional } from "../../components/optional";
 import { Failed, Loading } from "../../components/States";
 import { t } from "../../text";
 import { calibrationRange, sigmaHistory } from "./sigma";
 
+/** Estimates asked for: about one for every two pixels of the chart. */
+const POINTS = 200;
+
 const SigmaLines = optional(() => import("./SigmaLines"));
 
 /** How the three sigmas shrank. The chart comes when there is something to draw. */
 export function SigmaChart({ installation }: { installation: Installation }) {
   const { device_id, limits } = installation;
-  const estimates = useEstimates(device_id, calibrationRange(installation));
+  const estimates = useEstimates(device_id, {
+    range: calibrationRange(installation),
+    points: POINTS,
+    past: false,
+  });
   const history = useMemo(() => estimates.data && sigmaHistory(estimates.data), [estimates.data]);
   if (estimates.isError)
     return <Failed what={t("device.sure.the_chart")} error={estimates.error} retry={estimates.refetch} />;

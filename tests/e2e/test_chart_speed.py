@@ -1,0 +1,30 @@
+"""The angle history with as many points as there are at once can be moved along."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, expect
+
+from tests.e2e.speed import POINTS, SECONDS, open_long_history, pan_frame_rate, service_with_a_long_past
+from tests.e2e.visitor import Visitor
+
+pytestmark = pytest.mark.browser
+
+
+def test_ten_thousand_points_are_moved_along(
+    chromium: Browser, tmp_path: Path, record_property: Callable[[str, object], None]
+) -> None:
+    with service_with_a_long_past(tmp_path) as url, Visitor.at_work(chromium, url) as visitor:
+        visitor.sign_in()
+        visitor.open("/devices/van-1")
+        page = visitor.page
+        open_long_history(page)
+        shown = page.get_by_role("region", name="Angle history").get_by_role("status").first
+        before = shown.text_content() or ""
+        rate = pan_frame_rate(page)
+        print(f"{POINTS:,} points: {rate:.0f} frames a second over {SECONDS:.0f} s of panning")
+        record_property("pan_frames_per_second", round(rate, 1))
+        page.get_by_role("button", name="Earlier").click()
+        expect(shown).not_to_have_text(before)
+        visitor.see(f"{POINTS:,} estimates loaded")
