@@ -177,15 +177,3 @@ def test_a_device_key_sees_its_own_device_only(installer: Visitor, api: Api) -> 
     installer.tolerated += ("/devices/bus-2",)
     installer.open("/devices/bus-2")
     installer.see("does not exist")
-
-
-def test_the_record_is_one_page_of_paper(visitor: Visitor, api: Api) -> None:
-    device = api.add_device("van-1", name="Van 1", vehicle="Fiat Ducato")
-    device.send_all(drives.plain().chunks)
-    visitor.sign_in()
-    visitor.open("/devices/van-1")
-    visitor.see_stage("Confirmed")
-    visitor.page.emulate_media(media="print")
-    visitor.see("Installation record")
-    expect(visitor.page.get_by_role("banner")).to_be_hidden()
-    assert visitor.page.pdf(prefer_css_page_size=True).count(b"/Type /Page\n") == 1

@@ -11,11 +11,12 @@ import {
 } from "lucide-react";
 import type { LastData } from "../../api/types";
 import { useLive } from "../../app/Live";
-import { fixed, significant } from "../../lib/format";
-import { duration, toTheSecond } from "../../lib/time";
+import { fixed, significant, whole } from "../../lib/format";
+import { ago, toTheSecond } from "../../lib/time";
 import { t } from "../../text";
 import css from "./live.module.css";
 import { ageOf, silence } from "./silence";
+import { LEAST } from "./troubles";
 
 interface FiguresProps {
   data: LastData | null;
@@ -50,7 +51,11 @@ function DataFigures({ data: { has_fix, speed_mps, sample_rate_hz, gyroscope } }
       <Figure icon={Gauge} word={t("device.figure.speed")}>
         {speed ?? t("common.unknown")}
       </Figure>
-      <Figure icon={Waves} word={t("device.figure.rate")}>
+      <Figure
+        icon={Waves}
+        word={t("device.figure.rate")}
+        state={sample_rate_hz !== null && sample_rate_hz < LEAST.samples ? "bad" : "none"}
+      >
         {rate ?? t("common.unknown")}
       </Figure>
       <Figure icon={Rotate3d} word={t("device.figure.gyroscope")}>
@@ -62,14 +67,21 @@ function DataFigures({ data: { has_fix, speed_mps, sample_rate_hz, gyroscope } }
 
 function LastHeard({ at, now, live }: { at: string; now: Date; live: boolean }) {
   const age = ageOf(at, now);
-  const time = toTheSecond(new Date(at));
   return (
     <Figure icon={Clock} word={t("device.figure.last")} state={live ? silence(age) : "none"}>
       <time dateTime={at}>
-        {live ? t("device.figure.ago", { time: duration(age) }) : t("device.figure.as_of", { time })}
+        {live ? agoText(at, now) : t("device.figure.as_of", { time: toTheSecond(new Date(at)) })}
       </time>
     </Figure>
   );
+}
+
+/** Within the first minute each second counts: that is how one sees that data comes in. */
+function agoText(at: string, now: Date): string {
+  const age = ageOf(at, now);
+  return age < 60
+    ? t("device.figure.seconds_ago", { seconds: whole(Math.floor(age)) })
+    : ago(new Date(at), now);
 }
 
 interface FigureProps {

@@ -25,7 +25,9 @@ describe("silence", () => {
   );
 
   it("says how long, and nothing of what was sent before", () =>
-    expect(titles({ data: lastData({ has_fix: false }) }, later(300))).toEqual(["No data for 5 min"]));
+    expect(titles({ data: lastData({ has_fix: false }) }, later(300))).toEqual([
+      "The device is silent: last data 5 minutes ago",
+    ]));
 
   it("is as it should be once the mounting is confirmed", () =>
     expect(titles({ stage: "confirmed" }, later(86_400))).toEqual([]));

@@ -1,7 +1,7 @@
 /** What is wrong with a calibration, and what helps. */
 import type { Installation, LastData } from "../../api/types";
 import { percent, significant, whole } from "../../lib/format";
-import { duration, onTheClock } from "../../lib/time";
+import { ago, onTheClock } from "../../lib/time";
 import { t } from "../../text";
 import { ageOf, silence } from "./silence";
 
@@ -12,7 +12,7 @@ export interface Trouble {
 }
 
 /** Hz; below these a calibration takes long or does not end. A receiver of 1 Hz is measured as a little more or less. */
-const LEAST = { samples: 20, fixes: 0.9 };
+export const LEAST = { samples: 20, fixes: 0.9 };
 /** Shares of the samples or fixes that may be left out without a word. */
 const LEFT_OUT = { samples: 0.02, fixes: 0.1 };
 /** So few are chance. */
@@ -24,11 +24,10 @@ const LONG = 30 * 60;
 export function troubles(installation: Installation, now: Date): Trouble[] {
   if (installation.stage === "confirmed") return [];
   const { data, last_data_at } = installation;
-  const age = last_data_at === null ? null : ageOf(last_data_at, now);
-  const heard = age !== null && silence(age) === "none";
+  const heard = last_data_at !== null && silence(ageOf(last_data_at, now)) === "none";
   const found = [
     moved(installation),
-    age === null ? null : silent(age),
+    last_data_at === null ? null : silent(last_data_at, now),
     ...(heard && data ? ofData(data) : []),
     failed(installation),
     heard ? stalled(installation, now) : null,
@@ -46,10 +45,10 @@ function moved({ mount }: Installation): Trouble | null {
   };
 }
 
-function silent(age: number): Trouble | null {
-  const tone = silence(age);
+function silent(lastDataAt: string, now: Date): Trouble | null {
+  const tone = silence(ageOf(lastDataAt, now));
   if (tone === "none") return null;
-  const title = t("device.trouble.silent", { time: duration(age) });
+  const title = t("device.trouble.silent", { ago: ago(new Date(lastDataAt), now) });
   return { title, remedy: t("device.trouble.silent_do"), tone };
 }
 

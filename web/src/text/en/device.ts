@@ -40,13 +40,13 @@ export const device = {
     rate: "Samples",
     gyroscope: "Gyroscope",
     last: "Last data",
-    ago: "{{time}} ago",
+    seconds_ago: "{{seconds}} s ago",
     as_of: "as of {{time}}",
   },
 
   trouble: {
     list: "What is wrong",
-    silent: "No data for {{time}}",
+    silent: "The device is silent: last data {{ago}}",
     silent_do:
       "Switch the ignition on. If nothing comes, check the power, the SIM card and the key of the device.",
     no_fix: "The receiver has no GPS fix",

@@ -41,13 +41,13 @@ export const device: Translated<typeof en.device> = {
     rate: "Campioni",
     gyroscope: "Giroscopio",
     last: "Ultimi dati",
-    ago: "{{time}} fa",
+    seconds_ago: "{{seconds}} s fa",
     as_of: "alle {{time}}",
   },
 
   trouble: {
     list: "Che cosa non va",
-    silent: "Nessun dato da {{time}}",
+    silent: "Il dispositivo tace: ultimi dati {{ago}}",
     silent_do:
       "Accendere il quadro. Se non arriva nulla, controllare l’alimentazione, la SIM e la chiave del dispositivo.",
     no_fix: "Il ricevitore GPS non ha la posizione",
