@@ -195,6 +195,28 @@ def test_a_device_on_its_end_is_shown_as_it_is_and_turned_by_keys(visitor: Visit
     visitor.assert_accessible()
 
 
+def test_a_finger_turns_the_picture(chromium: Browser, address: str, api: Api) -> None:
+    api.add_device("van-1", name="Van 1").send(drives.chunks()[0], 0, expect=200)
+    with Visitor.at_work(chromium, address, 360, 740, has_touch=True) as installer:
+        page = open_device(installer)
+        canvas = page.get_by_role("region", name="Mounting", exact=True).locator("canvas")
+        canvas.scroll_into_view_if_needed()
+        box = canvas.bounding_box()
+        assert box is not None
+        before = canvas.evaluate("canvas => canvas.toDataURL()")
+        finger = page.context.new_cdp_session(page)
+        at = {"x": box["x"] + 200, "y": box["y"] + 100}
+        finger.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": [at]})
+        for _ in range(4):
+            at = at | {"x": at["x"] - 30}
+            finger.send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": [at]})
+        finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        assert canvas.evaluate("canvas => canvas.toDataURL()") != before
+        expect(
+            page.get_by_role("radiogroup", name="View of the vehicle").get_by_role("radio", checked=True)
+        ).to_have_count(0)
+
+
 def test_the_certificate_is_one_page_that_leads_back(visitor: Visitor, api: Api) -> None:
     device = api.add_device("van-1", name=LONG, vehicle=LONG, notes=f"{LONG}\n" * 9)
     device.send_all(drives.chunks())
