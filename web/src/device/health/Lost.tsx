@@ -15,11 +15,13 @@ export function Lost({ health: { lost } }: { health: Reception }) {
       <ul className={css.list}>
         {lost.map(({ session, from_seq, to_seq, before }) => (
           <li key={`${session} ${from_seq}`}>
-            {t(`history.health.lost.${from_seq === to_seq ? "one" : "some"}`, {
-              name: session,
-              first: whole(from_seq),
-              last: whole(to_seq),
-            })}
+            <b>
+              {t(`history.health.lost.${from_seq === to_seq ? "one" : "some"}`, {
+                name: session,
+                first: whole(from_seq),
+                last: whole(to_seq),
+              })}
+            </b>
             <span>
               <Trans i18nKey="history.health.lost.before" components={{ when: <ClockTime at={before} /> }} />
             </span>

@@ -21,7 +21,7 @@ interface EventsProps {
 /** The marks as a list, newest first; each leads to its place in the charts. */
 export function Events({ marks, span, time }: EventsProps) {
   const seen = span ? within(marks, span).reverse() : [];
-  if (seen.length === 0) return null;
+  if (marks.length === 0) return null;
   const number = whole(seen.length);
   return (
     <details className={css.events}>
@@ -39,10 +39,12 @@ export function Events({ marks, span, time }: EventsProps) {
               onClick={() => show(time, mark)}
             >
               <Line kind={mark.kind} />
-              <time dateTime={new Date(mark.time * 1000).toISOString()}>
-                {onTheClock(new Date(mark.time * 1000))}
-              </time>
-              <span>{mark.text}</span>
+              <span className={css.event}>
+                <time dateTime={new Date(mark.time * 1000).toISOString()}>
+                  {onTheClock(new Date(mark.time * 1000))}
+                </time>
+                <span>{mark.text}</span>
+              </span>
             </button>
           </li>
         ))}
@@ -51,9 +53,10 @@ export function Events({ marks, span, time }: EventsProps) {
   );
 }
 
+/** Where everything is shown, look closer. */
 function show(time: TimeAxis, { time: moment }: Mark): void {
   const span = time.span;
   if (!span) return;
-  const half = Math.min(lengthOf(span), AROUND) / 2;
+  const half = Math.min(lengthOf(span) * (time.chosen ? 1 : 0.25), AROUND) / 2;
   time.look(centred({ min: -half, max: half }, moment));
 }
