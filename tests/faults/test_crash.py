@@ -47,9 +47,9 @@ def crash_at(statement: int) -> Iterator[list[str]]:
         if not connection.get_execution_options().get("postgresql_readonly") and not is_reader(connection):
             count("COMMIT")
 
-    def execute(connection: sa.Connection, sql: str, *rest: Any) -> list[Any]:
+    def execute(connection: sa.Connection, sql: str, parameters: Any = (), gives_rows: bool = False) -> list[Any]:
         before_execute(connection, None, sql)
-        return straight(connection, sql, *rest)
+        return straight(connection, sql, parameters, gives_rows)
 
     straight, prepared.execute = prepared.execute, execute
     event.listen(sa.Engine, "before_cursor_execute", before_execute)
