@@ -18,7 +18,10 @@ from storage.models import metadata
 from tests.postgres import Server
 
 ROOT = Path(__file__).parents[2]
-ON_SQLITE, ON_POSTGRESQL = {"ix_devices_id_search", "ix_devices_name_key_id_search"}, {"ix_devices_name_key_id"}
+ON_SQLITE, ON_POSTGRESQL = (
+    {"ix_devices_id_search", "ix_devices_name_key_id_search"},
+    {"ix_devices_id", "ix_devices_name_key_id"},
+)
 CALIBRATION = sa.select(device_table.c.accelerometer_calibration)
 
 
