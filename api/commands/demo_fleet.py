@@ -72,7 +72,7 @@ FLEET = (
     Vehicle("car-206", "Car with a stuck sensor", "Fiat Panda", 6, ("sensor_fault",), STUCK, STUCK),
     Vehicle("van-104", "Van with a drifting sensor", "Opel Vivaro", 5, ("verification_failing",), DRIFTED, DRIFTING),
     Vehicle("van-105", "Van in a jam", "Mercedes Sprinter", 2, ("settling", "calibration_stalled"), JAM, JAM),
-    Vehicle("car-207", "Taxi without an antenna", "Toyota Prius", 4, ("gps_lost",), LOSING_GPS, WITHOUT_GPS),
+    Vehicle("car-207", "Taxi with a broken antenna", "Toyota Prius", 4, ("gps_lost",), LOSING_GPS, WITHOUT_GPS),
     Vehicle("lorry-301", "Lorry whose clock is set back", "MAN TGM", 5, ("clock_fault",), SET_BACK, SET_BACK),
     # As they should be.
     Vehicle("lorry-302", "Lorry on the motorway", "Iveco S-Way", 7, ("confirmed",), DAY_ON_MOTORWAY, MOTORWAY),

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
 from threading import Event, Thread
@@ -60,7 +61,9 @@ class Player:
         vehicle = self.vehicle
         try:
             key = register(self.office, vehicle.device_id, vehicle.name, vehicle.kind)
-            with _service(self.server, key or "", self.end) as own:
+            if key is None:
+                return  # somebody was quicker on the page
+            with _service(self.server, key, self.end) as own:
                 self._catch_up(own)
                 self.caught_up.set()
                 self._drive_on(own)
@@ -70,7 +73,7 @@ class Player:
             self.caught_up.set()
 
     def _catch_up(self, own: Service) -> None:
-        """Send what was recorded before the demo, as large as it is."""
+        """Send what was recorded before the demo, all at once."""
         if self.vehicle.past is None:
             return
         device = self._power_up(own)
@@ -82,14 +85,17 @@ class Player:
         trip = self.vehicle.now
         if trip is None or self.end.wait(self.vehicle.fitted_at or 0.0):
             return
-        while not self.end.is_set():
-            self._drive(own, trip)
+        while True:
+            with suppress(UnavailableError):  # a trip during which the service stays away is given up
+                self._drive(own, trip)
+            if self.end.is_set():
+                return
             if self.vehicle.fitted_at is not None:
                 self._recorder.refit()
                 self.office.request("POST", f"devices/{self.vehicle.device_id}/installation/restart")
 
     def _drive(self, own: Service, trip: Trip) -> None:
-        """Send each piece when it is due; a trip during which the service stays away is given up."""
+        """Send each piece when it is due."""
         device = self._power_up(own)
         due = time.monotonic()
         for piece in self._record(trip, POST_EVERY):

@@ -11,7 +11,7 @@ import pytest
 import core
 from api import schemas
 from api.services import rules
-from api.services.rules import Limits, Seen, Watch, device_loose, sensor_fault, verification_failing
+from api.services.rules import Limits, Seen, Watch, device_loose, device_silent, sensor_fault, verification_failing
 from api.services.rules.seen import see
 from api.settings import Settings
 from core import EventKind, Fault, Stage
@@ -89,6 +89,25 @@ def test_a_sensor_must_be_sound_and_starts_over_with_every_fault() -> None:
         assert (memory.told, verdict) == (True, None)
     memory, verdict = sensor_fault.step(memory, seen(), LIMITS)
     assert (memory, verdict is not None) == (sensor_fault.Memory(), True)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (18.0, "for 18 seconds."),
+        (119.0, "for 119 seconds."),
+        (360.0, "for 6 minutes."),
+        (7200.0, "for 2 hours."),
+        (47 * 3600.0, "for 47 hours."),
+        (72 * 3600.0, "for 3 days."),
+    ],
+)
+def test_a_silence_is_told_in_words(seconds: float, words: str) -> None:
+    silent = timedelta(seconds=seconds)
+    found = device_silent.finding(NOW - silent, NOW, silent)
+    assert words in found.message
+    assert found.data["seen"] == pytest.approx(seconds / 3600, abs=5e-4)
+    assert found.data["threshold"] == seconds / 3600
 
 
 @pytest.mark.parametrize("kind", ["device_loose", "sensor_fault"])
