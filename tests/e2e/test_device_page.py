@@ -34,7 +34,7 @@ def live(page: Page) -> Locator:
 def choose(page: Page, item: str) -> Locator:
     """Open one of the dialogs of the menu."""
     page.get_by_role("button", name="More", exact=True).click()
-    page.get_by_role("menuitem", name=item).click()
+    page.get_by_role("button", name=item).click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_be_visible()
     return dialog
