@@ -146,6 +146,16 @@ def test_the_list_is_sorted_by_its_heads(manager: Visitor) -> None:
     manager.assert_accessible()
 
 
+def test_another_order_begins_at_the_top(manager: Visitor) -> None:
+    page = manager.page
+    page.evaluate("scrollTo(0, 100000)")
+    expect(rows(page).first).to_be_visible()
+    page.get_by_role("columnheader", name="Name").get_by_role("button").click()
+    expect(page.locator("[data-index='0']")).to_be_in_viewport()
+    page.go_back()
+    expect(page.get_by_role("columnheader", name="Id")).to_have_attribute("aria-sort", "ascending")
+
+
 def test_a_phone_sorts_and_filters_too(chromium: Browser, large: str) -> None:
     with Visitor.at_work(chromium, large, width=360, height=740, has_touch=True) as visitor:
         visitor.sign_in()
@@ -440,3 +450,4 @@ def test_the_key_is_shown_once_and_its_code_can_be_scanned(visitor: Visitor, api
     (device,) = api.get("/devices")["items"]
     assert api.as_(key).get(f"/devices/{device['id']}/installation")["stage"] == "waiting"
     expect(page.get_by_role("link", name="Van 12")).to_be_visible()
+    expect(page.get_by_role("button", name="Add a device")).to_be_focused()

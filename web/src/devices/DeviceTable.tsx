@@ -28,6 +28,10 @@ export function DeviceTable({ list, rows, total, sort, onChange }: DeviceTablePr
   const roles = isWide ? asTable(total) : asCards(total);
   const ahead = list.hasNextPage ? Math.max(total ?? 0, rows.length + 1) : rows.length;
   const { body, virtualizer, items, tabStop, handlers } = useRows(rows, ahead, isWide);
+  const sortAnew: Change = (change) => {
+    onChange(change);
+    toTop(body.current?.parentElement);
+  };
   const again = list.isFetchNextPageError ? list.fetchNextPage : list.refetch;
   useReadAhead(list, rows.length, items.at(-1)?.index ?? 0);
   return (
@@ -38,7 +42,7 @@ export function DeviceTable({ list, rows, total, sort, onChange }: DeviceTablePr
         aria-busy={list.isPlaceholderData}
         data-stale={list.isPlaceholderData || undefined}
       >
-        {isWide && <ColumnHeads sort={sort} onChange={onChange} />}
+        {isWide && <ColumnHeads sort={sort} onChange={sortAnew} />}
         <div
           ref={body}
           className={css.body}
@@ -67,6 +71,11 @@ export function DeviceTable({ list, rows, total, sort, onChange }: DeviceTablePr
       )}
     </>
   );
+}
+
+/** In another order the place in the list means nothing: begin at its top, when that was scrolled away. */
+function toTop(table: Element | null | undefined): void {
+  if (table && table.getBoundingClientRect().top < 0) table.scrollIntoView();
 }
 
 /** A row that has not been read yet is known to come. */

@@ -25,6 +25,7 @@ export function DevicesPage() {
       <header className={css.head}>
         <h1>{t("devices.title")}</h1>
         <Button
+          ref={adding.fallback}
           leftSection={<Plus size={20} aria-hidden />}
           onClick={adding.open}
           onPointerEnter={loadAddDevice}
@@ -50,17 +51,20 @@ export function DevicesPage() {
   );
 }
 
-/** A dialog that begins anew each time, and gives the focus back to what opened it. */
+/** A dialog that begins anew each time, and gives the focus back to what opened it, or else to the fallback. */
 function useDialog() {
   const [opened, setOpened] = useState(false);
   const opener = useRef<Element>(null);
+  const fallback = useRef<HTMLButtonElement>(null);
   const open = () => {
     opener.current = document.activeElement;
     setOpened(true);
   };
   const close = () => {
     setOpened(false);
-    if (opener.current instanceof HTMLElement) opener.current.focus();
+    const { current } = opener;
+    if (current instanceof HTMLElement && current.isConnected) current.focus();
+    else fallback.current?.focus();
   };
-  return { opened, open, close };
+  return { opened, open, close, fallback };
 }
