@@ -311,6 +311,19 @@ def test_who_did_what_is_looked_up(visitor: Visitor, api: Api, service: Service)
     visitor.see("Nothing matches.")
 
 
+def test_what_the_service_decides_by_is_read(visitor: Visitor, api: Api) -> None:
+    items = api.get("/thresholds")["items"]
+    visitor.sign_in(key_of(api, "manager", "Anna"))
+    visitor.open("/settings/thresholds")
+    rows = visitor.page.locator("tbody").get_by_role("row")
+    expect(rows).to_have_count(len(items))
+    expect(visitor.page.get_by_role("table", name="Alerts")).to_contain_text("30 min")
+    chunk = rows.filter(has=visitor.page.get_by_role("rowheader", name="max_chunk_bytes"))
+    expect(chunk).to_contain_text("16,777,216 bytes")
+    for item in items:
+        expect(rows.filter(has_text=item["meaning"]).first).to_be_visible()
+
+
 def test_what_the_service_is_and_how_it_looks(visitor: Visitor, api: Api) -> None:
     visitor.sign_in(key_of(api, "installer", "Ida"))
     visitor.open("/settings/about")

@@ -2,8 +2,9 @@ import { Button, Checkbox } from "@mantine/core";
 import { useId, useState } from "react";
 import type { Verb } from "../api/alerts";
 import type { Alert } from "../api/types";
-import { RelativeTime } from "../components/RelativeTime";
+import { ClockTime, RelativeTime } from "../components/RelativeTime";
 import { Pill } from "../components/Tone";
+import { beginning } from "../device/evidence";
 import { whole } from "../lib/format";
 import { language, Trans, t } from "../text";
 import { AlertDetails } from "./AlertDetails";
@@ -25,6 +26,7 @@ interface AlertCardProps {
 /** An alert: what was found on which device, how bad it is, who is on it, and what can be done. */
 export function AlertCard({ alert, showDevice, unfolded = false, selection }: AlertCardProps) {
   const [title, check] = [useId(), useId()];
+  const Title = showDevice ? "h2" : "h3";
   const { tone } = alert.state === "resolved" ? STATE.resolved : SEVERITY[alert.severity];
   return (
     <article className={css.card} data-tone={tone} aria-labelledby={title}>
@@ -40,7 +42,7 @@ export function AlertCard({ alert, showDevice, unfolded = false, selection }: Al
           </label>
         )}
         <div>
-          <h2 id={title}>{finding(alert)}</h2>
+          <Title id={title}>{finding(alert)}</Title>
           <p className={css.facts}>
             {showDevice && <DeviceLink id={alert.device_id} />}
             <Times alert={alert} />
@@ -59,6 +61,7 @@ export function AlertCard({ alert, showDevice, unfolded = false, selection }: Al
 
 function Times({ alert }: { alert: Alert }) {
   const when = (at: string) => ({ when: <RelativeTime at={at} /> });
+  const since = beginning(alert.data);
   return (
     <>
       <span>
@@ -67,6 +70,11 @@ function Times({ alert }: { alert: Alert }) {
       {alert.updated_at !== alert.opened_at && (
         <span>
           <Trans i18nKey="alerts.card.updated" components={when(alert.updated_at)} />
+        </span>
+      )}
+      {since && alert.kind !== "device_silent" && (
+        <span>
+          <Trans i18nKey="alerts.card.began" components={{ when: <ClockTime at={since} /> }} />
         </span>
       )}
       {alert.count > 1 && <span>{t("alerts.card.count", { number: whole(alert.count) })}</span>}

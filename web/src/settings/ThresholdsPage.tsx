@@ -1,9 +1,9 @@
 import { useThresholds } from "../api/service";
 import type { Threshold } from "../api/types";
 import { Failed, Loading } from "../components/States";
-import { significant } from "../lib/format";
 import { t } from "../text";
 import css from "./settings.module.css";
+import { valueText } from "./thresholds";
 
 const GROUPS = ["settling", "verification", "change", "alerts", "upload", "retention"] as const;
 
@@ -48,7 +48,7 @@ function Group({ name, of }: { name: Threshold["group"]; of: readonly Threshold[
                 <code>{item.name}</code>
               </th>
               <td>{valueText(item)}</td>
-              <td lang="en">{item.meaning}</td>
+              <td lang="en">{meaning(item)}</td>
             </tr>
           ))}
         </tbody>
@@ -57,8 +57,9 @@ function Group({ name, of }: { name: Threshold["group"]; of: readonly Threshold[
   );
 }
 
-function valueText({ value, unit }: Threshold): string {
-  if (value === "infinite") return t("settings.thresholds.infinite");
-  const text = typeof value === "number" ? significant(value, 6) : value;
-  return unit ? `${text} ${unit}` : text;
+/** Names stand between `backticks`. */
+function meaning({ meaning: text, name }: Threshold) {
+  const parts = text.split("`");
+  // biome-ignore lint/suspicious/noArrayIndexKey: the parts of a sentence stay where they are
+  return parts.map((part, i) => (i % 2 ? <code key={`${name} ${i}`}>{part}</code> : part));
 }
