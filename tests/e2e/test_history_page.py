@@ -272,12 +272,13 @@ def test_a_mounting_unfolds(page: Page, moved: Device) -> None:
     expect(mounts.get_by_role("listitem")).to_have_count(2)
     newest, first = (mounts.get_by_role("listitem").nth(i) for i in (0, 1))
     expect(newest).to_contain_text("In force")
-    expect(newest).to_contain_text(re.compile(r"Drive test passed: \d\.\d m/s of speed error after \d+ s, \d\.\d m/s"))
+    expect(newest).to_contain_text(re.compile(r"Drive test passed: speed error \d\.\d km/h after \d+ s, \d+\.\d km/h allowed"))
     first.get_by_text("Mounting 1: details").click()
     known = moved.get("mounts/1")
     quaternion = ", ".join(f"{part:.6f}" for part in known["quaternion"])
     expect(first.get_by_text(quaternion)).to_be_visible()
     expect(first.get_by_text("a", exact=True)).to_be_visible()
+    expect(first.get_by_role("img", name="Speed over")).to_be_visible()
 
 
 def test_evidence_has_names_and_units(page: Page) -> None:
@@ -302,7 +303,7 @@ def test_everybody_can_use_it_in_italian_too(visitor: Visitor, page: Page) -> No
     region.get_by_text("Eventi nella vista").click()
     expect(region.get_by_role("list").last).to_contain_text("Fase: Verifica")
     mounts = page.get_by_role("region", name="Montaggi confermati")
-    expect(mounts).to_contain_text("Prova su strada superata: errore di velocità di 0,")
+    expect(mounts).to_contain_text(re.compile(r"Prova su strada superata: errore di velocità di \d,\d km/h"))
     alerts = page.get_by_role("region", name="Avvisi")
     alerts.get_by_text("Che cosa si è visto").click()
     expect(alerts).to_contain_text("Girato di")

@@ -18,10 +18,10 @@ interface Wanted {
   range: TimeRange;
   points: number;
   /** it has ended before the newest data: what comes in changes nothing in it */
-  past: boolean;
+  past?: boolean;
 }
 
-export function useEstimates(id: string, { range, points, past }: Wanted) {
+export function useEstimates(id: string, { range, points, past = false }: Wanted) {
   return useQuery({
     queryKey: [...(past ? keys.past(id) : keys.estimates(id)), range, points],
     queryFn: () => readEstimates(id, range, points),

@@ -1,10 +1,11 @@
-import { lazy, Suspense, useMemo, useState } from "react";
+import { Suspense, useMemo, useState } from "react";
+import { optional } from "../components/optional";
 import { t } from "../text";
 import { type AlertData, evidenceSeries } from "./evidence";
 import css from "./evidence.module.css";
 import { evidenceRows } from "./evidenceRows";
 
-const EvidenceChart = lazy(() => import("./EvidenceChart").then((m) => ({ default: m.EvidenceChart })));
+const EvidenceChart = optional(() => import("./EvidenceChart"));
 
 interface EvidenceProps {
   /** what kind of alert it is; without it what was measured has a general name */

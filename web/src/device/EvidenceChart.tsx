@@ -7,7 +7,7 @@ import css from "./evidence.module.css";
 import { evidencePlot } from "./evidencePlot";
 
 /** The statistic of a sequential test over time, and the value at which it decides. */
-export function EvidenceChart({ series }: { series: EvidenceSeries }) {
+export default function EvidenceChart({ series }: { series: EvidenceSeries }) {
   const element = useRef<HTMLDivElement>(null);
   const scheme = useComputedColorScheme("light");
 

@@ -1,7 +1,8 @@
-import { useState } from "react";
+import { Suspense, useMemo, useState } from "react";
 import { useSessionAt } from "../api/history";
 import type { Mount } from "../api/types";
 import { Copyable } from "../components/Copyable";
+import { optional } from "../components/optional";
 import { ClockTime } from "../components/RelativeTime";
 import { Failed, Loading } from "../components/States";
 import { Pill } from "../components/Tone";
@@ -9,6 +10,9 @@ import { degreesText, fixed, whole } from "../lib/format";
 import type { Tone } from "../lib/stages";
 import { t } from "../text";
 import css from "./mounts.module.css";
+import { kmh, speeds } from "./verification/trace";
+
+const TraceLines = optional(() => import("./verification/TraceLines"));
 
 const TONE: Record<Mount["status"], Tone> = { in_force: "good", suspect: "bad", superseded: "neutral" };
 
@@ -46,16 +50,23 @@ export function MountRow({ id, mount }: { id: string; mount: Mount }) {
 function testWords({ verification: { state, error_mps, limit_mps, elapsed_s } }: Mount): string {
   if (error_mps === null) return t("history.mounts.untested");
   return t(`history.mounts.${state === "passed" ? "passed" : "tested"}`, {
-    error: fixed(Math.abs(error_mps), 1),
-    limit: fixed(limit_mps, 1),
+    error: kmh(error_mps),
+    limit: kmh(limit_mps),
     seconds: whole(elapsed_s),
   });
 }
 
 function Details({ id, mount }: { id: string; mount: Mount }) {
+  const { trace } = mount.verification;
+  const drawn = useMemo(() => speeds(trace), [trace]);
   const quaternion = mount.quaternion.map((part) => part.toFixed(6)).join(", ");
   return (
     <div className={css.details}>
+      {drawn && (
+        <Suspense fallback={<Loading what={t("device.test.the_chart")} />}>
+          <TraceLines speeds={drawn} />
+        </Suspense>
+      )}
       <Copyable label={t("history.mounts.quaternion")} text={quaternion} />
       <Session id={id} at={mount.confirmed_at} />
     </div>

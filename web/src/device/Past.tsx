@@ -1,18 +1,19 @@
 import { useIntersection } from "@mantine/hooks";
-import { lazy, Suspense, useState } from "react";
+import { type ComponentType, lazy, Suspense, useState } from "react";
 import { Section } from "../components/Section";
-import { Loading } from "../components/States";
+import { Failed, Loading } from "../components/States";
 import { t } from "../text";
 
-const HistorySection = lazy(() =>
-  import("./history/HistorySection").then((m) => ({ default: m.HistorySection })),
-);
-const HealthSection = lazy(() =>
-  import("./health/HealthSection").then((m) => ({ default: m.HealthSection })),
-);
+interface PastProps {
+  id: string;
+  lastData: string | null;
+}
+
+const HistorySection = later<PastProps>("history.title", () => import("./history/HistorySection"));
+const HealthSection = later<{ id: string }>("history.health.title", () => import("./health/HealthSection"));
 
 /** What the device has been through. Its program comes after the upper half, its data health when somebody scrolls there. */
-export function Past({ id, lastData }: { id: string; lastData: string | null }) {
+export function Past({ id, lastData }: PastProps) {
   return (
     <>
       <Suspense fallback={<Coming title={t("history.title")} lines={14} />}>
@@ -47,5 +48,21 @@ function Coming({ title, lines }: { title: string; lines: number }) {
     <Section title={title} className="no-print">
       <Loading what={title} lines={lines} />
     </Section>
+  );
+}
+
+/** A section whose program is fetched when it is wanted; where that fails, it says so. */
+function later<P>(
+  title: "history.title" | "history.health.title",
+  load: () => Promise<{ default: ComponentType<P> }>,
+) {
+  return lazy(() =>
+    load().catch((error: Error) => ({
+      default: () => (
+        <Section title={t(title)} className="no-print">
+          <Failed what={t(title)} error={error} retry={() => location.reload()} />
+        </Section>
+      ),
+    })),
   );
 }

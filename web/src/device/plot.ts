@@ -1,6 +1,5 @@
 /** What the page's charts have in common. Colours come from the page's own variables, so that light and dark both fit. */
 import uPlot from "uplot";
-import { locale } from "../text";
 import { apart } from "./apart";
 
 /** Put a chart into an element and keep its width; gives it, and the function that takes it away. */
@@ -26,20 +25,6 @@ export function look(element: HTMLElement): { ink: string; font: string; axis: u
   const ink = style.getPropertyValue("--mantine-color-dimmed");
   const font = `12px ${style.fontFamily}`;
   return { ink, font, axis: { stroke: ink, font, grid: { stroke: line, width: 1 }, ticks: { show: false } } };
-}
-
-const SECONDS = { hour: "2-digit", minute: "2-digit", second: "2-digit" } as const;
-const MINUTES = { hour: "2-digit", minute: "2-digit" } as const;
-const DAYS = { day: "numeric", month: "short" } as const;
-
-/** Times (s since 1970) as fine as the steps between them; midnight shows the date. */
-export function timeTexts(ticks: readonly number[], step: number): string[] {
-  const usual = step < 60 ? SECONDS : step < 86_400 ? MINUTES : DAYS;
-  return ticks.map((tick) => {
-    const time = new Date(tick * 1000);
-    const midnight = time.getHours() + time.getMinutes() + time.getSeconds() === 0;
-    return new Intl.DateTimeFormat(locale(), midnight ? DAYS : usual).format(time);
-  });
 }
 
 export interface LineName {

@@ -17,7 +17,7 @@ import { Sessions } from "./Sessions";
 import { Verdict } from "./Verdict";
 
 /** What became of the data of this device: what came in, what was not used and why, what was lost. */
-export function HealthSection({ id }: { id: string }) {
+export default function HealthSection({ id }: { id: string }) {
   const [period, setPeriod] = useState<Period>(24);
   return (
     <Section

@@ -25,7 +25,7 @@ interface HistoryProps {
 }
 
 /** How the angles came about: three charts with one time axis, and what happened meanwhile. */
-export function HistorySection({ id, lastData }: HistoryProps) {
+export default function HistorySection({ id, lastData }: HistoryProps) {
   const window = useWindow(lastData);
   return (
     <Section

@@ -14,11 +14,7 @@ const SigmaLines = optional(() => import("./SigmaLines"));
 /** How the three sigmas shrank. The chart comes when there is something to draw. */
 export function SigmaChart({ installation }: { installation: Installation }) {
   const { device_id, limits } = installation;
-  const estimates = useEstimates(device_id, {
-    range: calibrationRange(installation),
-    points: POINTS,
-    past: false,
-  });
+  const estimates = useEstimates(device_id, { range: calibrationRange(installation), points: POINTS });
   const history = useMemo(() => estimates.data && sigmaHistory(estimates.data), [estimates.data]);
   if (estimates.isError)
     return <Failed what={t("device.sure.the_chart")} error={estimates.error} retry={estimates.refetch} />;

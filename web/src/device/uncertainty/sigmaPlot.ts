@@ -1,8 +1,9 @@
 /** The chart of the three sigmas. */
 import uPlot from "uplot";
 import { fixed } from "../../lib/format";
+import { tickTimes } from "../../lib/time";
 import { t } from "../../text";
-import { look, nameLines, plotIn, roomForNames, timeTexts } from "../plot";
+import { look, nameLines, plotIn, roomForNames } from "../plot";
 import { type SigmaHistory, sigmaRange } from "./sigma";
 
 /** Pixels. */
@@ -50,7 +51,7 @@ function options(
     scales: { x: { time: true }, y: { distr: 3, range } },
     padding: [8, roomForNames(font, words()), 0, 0],
     axes: [
-      { ...axis, size: 24, space: 64, values: (_, ticks, __, ___, step) => timeTexts(ticks, step) },
+      { ...axis, size: 24, space: 64, values: (_, ticks, __, ___, step) => tickTimes(ticks, step) },
       {
         ...axis,
         size: 46,

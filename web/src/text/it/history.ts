@@ -71,8 +71,9 @@ export const history: Translated<typeof en.history> = {
     angles: "Rollio {{roll}}, beccheggio {{pitch}}, imbardata {{yaw}}",
     sigma: "± {{roll}}, {{pitch}} e {{yaw}}",
     passed:
-      "Prova su strada superata: errore di velocità di {{error}} m/s dopo {{seconds}} s, ammessi {{limit}} m/s.",
-    tested: "Prova su strada: errore di velocità di {{error}} m/s dopo {{seconds}} s, ammessi {{limit}} m/s.",
+      "Prova su strada superata: errore di velocità di {{error}} km/h dopo {{seconds}} s, ammessi {{limit}} km/h.",
+    tested:
+      "Prova su strada: errore di velocità di {{error}} km/h dopo {{seconds}} s, ammessi {{limit}} km/h.",
     untested: "La prova su strada non ha lasciato un errore di velocità.",
     details: "Montaggio {{number}}: dettagli",
     quaternion: "Quaternione q_vs: w, x, y, z",
