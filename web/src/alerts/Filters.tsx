@@ -55,7 +55,7 @@ function States({ state, onChange }: { state: State; onChange: (state: State) =>
           aria-pressed={name === state}
           onClick={() => onChange(name)}
         >
-          {name === "unresolved" || name === "all" ? t(`alerts.filter.${name}`) : t(`alerts.state.${name}`)}
+          {t(`alerts.filter.${name}`)}
         </button>
       ))}
     </fieldset>

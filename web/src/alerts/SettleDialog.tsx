@@ -6,6 +6,7 @@ import type { Alert } from "../api/types";
 import { Dialog } from "../components/Dialog";
 import { say } from "../components/Said";
 import { Bar } from "../components/Tone";
+import type { Outcome } from "../lib/each";
 import { whole } from "../lib/format";
 import { t } from "../text";
 import { SettleReport } from "./SettleReport";
@@ -23,37 +24,32 @@ export function SettleDialog({ alerts, verb, onClose }: SettleDialogProps) {
   const settle = useSettle();
   const [note, setNote] = useState("");
   const [finished, setFinished] = useState(0);
-  const run = (which: readonly Alert[]) => {
-    setFinished(0);
-    settle.mutate({ alerts: which, verb, note: note.trim(), onProgress: setFinished }, { onSuccess: tell });
-  };
-  const judged = (outcomes: NonNullable<typeof settle.data>) => report(outcomes, verb, me, note.trim());
-  const tell = (outcomes: NonNullable<typeof settle.data>) => {
+  const judged = (outcomes: Outcomes) => report(outcomes, verb, me, note.trim());
+  const tell = (outcomes: Outcomes) => {
     const after = judged(outcomes);
     say(saidText(after, verb));
     if (isTold(after)) onClose();
   };
+  const run = (which: readonly Alert[]) => {
+    setFinished(0);
+    settle.mutate({ alerts: which, verb, note: note.trim(), onProgress: setFinished }, { onSuccess: tell });
+  };
+  const close = () => {
+    if (!settle.isPending) onClose();
+  };
   const [count, number] = [alerts.length, whole(alerts.length)];
+  const running = settle.isPending ? settle.variables.alerts.length : 0;
   return (
-    <Dialog opened onClose={onClose} title={t(`alerts.settle.${verb}_title`, { count, number })}>
+    <Dialog opened onClose={close} title={t(`alerts.settle.${verb}_title`, { count, number })}>
       {settle.data ? (
-        <SettleReport report={judged(settle.data)} onAgain={run} onClose={onClose} />
+        <SettleReport report={judged(settle.data)} onAgain={run} onClose={close} />
       ) : (
         <Stack>
           <p style={{ margin: 0 }}>{t(`alerts.settle.${verb}_about`)}</p>
-          <Textarea
-            label={t("alerts.settle.note")}
-            description={t("alerts.settle.note_about")}
-            autosize
-            minRows={2}
-            maxLength={4000}
-            value={note}
-            onChange={(event) => setNote(event.currentTarget.value)}
-            data-autofocus
-          />
-          {settle.isPending && count > 1 && <Progress finished={finished} of={count} />}
+          <Note note={note} onChange={setNote} />
+          {running > 1 && <Progress finished={finished} of={running} />}
           <Group justify="flex-end">
-            <Button variant="default" onClick={onClose}>
+            <Button variant="default" disabled={settle.isPending} onClick={close}>
               {t("common.cancel")}
             </Button>
             <Button loading={settle.isPending} onClick={() => run(alerts)}>
@@ -63,6 +59,23 @@ export function SettleDialog({ alerts, verb, onClose }: SettleDialogProps) {
         </Stack>
       )}
     </Dialog>
+  );
+}
+
+type Outcomes = readonly Outcome<Alert, Alert>[];
+
+function Note({ note, onChange }: { note: string; onChange: (note: string) => void }) {
+  return (
+    <Textarea
+      label={t("alerts.settle.note")}
+      description={t("alerts.settle.note_about")}
+      autosize
+      minRows={2}
+      maxLength={4000}
+      value={note}
+      onChange={(event) => onChange(event.currentTarget.value)}
+      data-autofocus
+    />
   );
 }
 
