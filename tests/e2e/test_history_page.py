@@ -272,7 +272,9 @@ def test_a_mounting_unfolds(page: Page, moved: Device) -> None:
     expect(mounts.get_by_role("listitem")).to_have_count(2)
     newest, first = (mounts.get_by_role("listitem").nth(i) for i in (0, 1))
     expect(newest).to_contain_text("In force")
-    expect(newest).to_contain_text(re.compile(r"Drive test passed: speed error \d\.\d km/h after \d+ s, \d+\.\d km/h allowed"))
+    expect(newest).to_contain_text(
+        re.compile(r"Drive test passed: speed error \d\.\d km/h after \d+ s, \d+\.\d km/h allowed")
+    )
     first.get_by_text("Mounting 1: details").click()
     known = moved.get("mounts/1")
     quaternion = ", ".join(f"{part:.6f}" for part in known["quaternion"])
