@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel bench-load bench-age fuzz fuzz-api clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel bench-load bench-age bench-page fuzz fuzz-api clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -65,7 +65,7 @@ test: setup  ## everything
 	pytest -m "not browser" --ignore tests/core -n 3
 
 bench: setup
-	for b in accuracy age kernel load thesis; do $(BIN)/python benchmarks/$$b.py || exit 1; done
+	for b in accuracy age kernel load page thesis; do $(BIN)/python benchmarks/$$b.py || exit 1; done
 
 bench-accuracy: setup  ## accuracy, honesty and alarms on thousands of drives: writes docs/accuracy.md
 	$(BIN)/python benchmarks/accuracy.py
@@ -78,6 +78,9 @@ bench-load: setup  ## devices the service holds, 20 minutes: writes docs/perform
 
 bench-age: setup  ## uploads, lists and charts after a year, 7 minutes: writes docs/performance.md
 	$(BIN)/python benchmarks/age.py
+
+bench-page: setup  ## how soon the page comes and how smoothly it moves, 3 minutes: writes docs/performance.md
+	$(BIN)/python benchmarks/page.py
 
 FUZZ_SECONDS ?= 80
 fuzz: setup  ## every parser against made-up bytes, 11 minutes; FUZZ_SECONDS for each of the eight. Findings in out/fuzz

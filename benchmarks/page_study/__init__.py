@@ -1,0 +1,1 @@
+"""How quickly the page comes and moves, in a real browser."""
