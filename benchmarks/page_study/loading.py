@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Any, NamedTuple
 
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, ViewportSize
 
 SLOW_DOWN = 4
 """times slower than the machine's processor"""
-PHONE = {"width": 360, "height": 740}
+PHONE: ViewportSize = {"width": 360, "height": 740}
 APART = "Scene3D"
 """script that is not counted: the 3D part, which comes where it is shown, after the rest"""
 QUIET = 2000.0
