@@ -145,7 +145,7 @@ def _belongs(
     some = members.with_only_columns(pk).limit(MANY)
     number = tx.value(sa.select(sa.func.count()).select_from(some.subquery("some")))
     if number >= MANY:
-        told = members.where(device_id == order.id).exists()
+        told = members.with_only_columns(device_id).where(device_id == order.id).exists()
         return told if wanted else ~told
     within = order.pk.in_(some)  # the limit takes none away now, but assures PostgreSQL that a set fits into its memory
     return within if number < FEW and wanted else within.is_(wanted)

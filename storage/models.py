@@ -271,13 +271,15 @@ sa.Index(
     postgresql_where=alert_unresolved,
 )
 sa.Index(
-    "ix_alerts_unresolved_device_id",
+    "ix_alerts_unresolved_device_id_kind",
     alerts.c.device_id,
-    alerts.c.device_pk,
+    alerts.c.kind,
+    alerts.c.state,
     sqlite_where=alert_unresolved,
     postgresql_where=alert_unresolved,
 )
-"""Whether a device has open alerts is asked by its id: SQLite would take the number for the index of all alerts."""
+"""Whether a device has open alerts, or of which kind, is asked by its id: SQLite would take the number for the index of
+all alerts, and the kind alone for that of all devices."""
 _of_device = (alerts.c.device_id, alerts.c.device_pk, alerts.c.state)
 sa.Index(
     "ix_alerts_unresolved_kind_severity",

@@ -12,8 +12,12 @@ NAME_KEY = sa.Text().with_variant(sa.Text(collation="C"), "postgresql")
 DEVICE_INDEXES = {"sqlite": (["name_key", "id", "search"],), "postgresql": (["id"], ["name_key", "id"])}
 UNRESOLVED = sa.text("state != 'resolved'")
 SUSPECT = sa.text("status = 'suspect'")
-FORMER_COLUMNS = ["kind", "severity"]
-SEEN = ["device_id", "device_pk", "state"]
+FORMER_UNRESOLVED = {"device_id": ["device_id", "device_pk"], "kind_severity": ["kind", "severity"]}
+UNRESOLVED_INDEXES = {
+    "device_id_kind": ["device_id", "kind", "state"],
+    "kind_severity": ["kind", "severity", "device_id", "device_pk", "state"],
+    "severity": ["severity", "device_id", "device_pk", "state"],
+}
 
 
 def upgrade() -> None:
@@ -25,9 +29,7 @@ def upgrade() -> None:
         op.drop_index(name, table_name="installations")
     for column in ("stage", "last_data_at"):
         _index("installations", [column, "device_id"], "device_pk")
-    op.drop_index("ix_alerts_unresolved_kind_severity", table_name="alerts")
-    _index_unresolved("ix_alerts_unresolved_kind_severity", [*FORMER_COLUMNS, *SEEN])
-    _index_unresolved("ix_alerts_unresolved_severity", ["severity", *SEEN])
+    _replace_unresolved(FORMER_UNRESOLVED, UNRESOLVED_INDEXES)
     op.create_index(
         "ix_mounts_suspect", "mounts", ["device_pk"], unique=False, sqlite_where=SUSPECT, postgresql_where=SUSPECT
     )
@@ -49,15 +51,23 @@ def _name(table: str, columns: list[str]) -> str:
     return f"ix_{table}_{'_'.join(columns)}"
 
 
-def _index_unresolved(name: str, columns: list[str]) -> None:
-    op.create_index(name, "alerts", columns, unique=False, sqlite_where=UNRESOLVED, postgresql_where=UNRESOLVED)
+def _replace_unresolved(former: dict[str, list[str]], new: dict[str, list[str]]) -> None:
+    for name in former:
+        op.drop_index(f"ix_alerts_unresolved_{name}", table_name="alerts")
+    for name, columns in new.items():
+        op.create_index(
+            f"ix_alerts_unresolved_{name}",
+            "alerts",
+            columns,
+            unique=False,
+            sqlite_where=UNRESOLVED,
+            postgresql_where=UNRESOLVED,
+        )
 
 
 def downgrade() -> None:
     op.drop_index("ix_mounts_suspect", table_name="mounts")
-    op.drop_index("ix_alerts_unresolved_severity", table_name="alerts")
-    op.drop_index("ix_alerts_unresolved_kind_severity", table_name="alerts")
-    _index_unresolved("ix_alerts_unresolved_kind_severity", FORMER_COLUMNS)
+    _replace_unresolved(UNRESOLVED_INDEXES, FORMER_UNRESOLVED)
     for column in ("stage", "last_data_at"):
         op.drop_index(f"ix_installations_{column}_device_id", table_name="installations")
     op.create_index("ix_installations_last_data_at", "installations", ["last_data_at"], unique=False)

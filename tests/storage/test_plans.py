@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
-from itertools import product
+from itertools import pairwise, product
 
 import pytest
 
@@ -158,3 +158,5 @@ def test_devices_come_in_the_order_of_an_index(
             assert few or sum("TEMP B-TREE" in step for step in steps) <= pages, told
             assert all("COVERING" in step for step in steps if step.startswith("SCAN ") and step != "SCAN some"), told
             assert all("ix_alerts_unresolved" in step for step in steps if " alerts " in step), told
+            looked_up = [step for before, step in pairwise(steps) if before.startswith("CORRELATED")]
+            assert all("device_id=?" in step or "device_pk=?" in step for step in looked_up), told
