@@ -16,6 +16,7 @@ from rich.panel import Panel
 from api.app import create_app
 from api.commands.demo_fleet import FLEET
 from api.commands.demo_player import play
+from api.commands.serve import spare_the_lasting
 from api.services import access
 from api.settings import Settings
 
@@ -44,7 +45,7 @@ def run(port: int) -> None:
         )
         server = uvicorn.Server(
             uvicorn.Config(
-                create_app(settings),
+                create_app(settings, when_ready=spare_the_lasting),
                 host=HOST,
                 port=port,
                 log_level="warning",
