@@ -146,7 +146,7 @@ def test_a_moved_device_is_told_with_the_evidence(visitor: Visitor, api: Api) ->
     shown = visitor.page.get_by_role("region", name="Alerts")
     expect(shown).to_contain_text(alert["message"])
     chart = shown.get_by_role("img", name="Evidence went from")
-    expect(chart).to_have_count(0 if alert["data"]["evidence"] is None else 1)
+    expect(chart).to_have_count(0 if alert["data"]["evidence"] is None else 1, timeout=20_000)
     visitor.assert_accessible()
 
 

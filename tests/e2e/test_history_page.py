@@ -364,7 +364,7 @@ def test_the_lower_half_comes_when_it_is_looked_at(visitor: Visitor, api: Api) -
     visitor.page.on("request", lambda request: asked.append(request.url))
     visitor.sign_in()
     visitor.open("/devices/van-1")
-    expect(visitor.page.get_by_role("img", name=CHART)).to_be_attached()
+    expect(visitor.page.get_by_role("img", name=CHART)).to_be_attached(timeout=20_000)
     assert not [url for url in asked if "/health" in url or "HealthSection" in url]
     visitor.page.get_by_role("region", name="Data health").scroll_into_view_if_needed()
     visitor.see("Every chunk has arrived")
