@@ -117,9 +117,10 @@ def open_long_history(page: Page) -> None:
 
 
 def pan_frame_rate(page: Page, seconds: float = SECONDS) -> float:
-    """Move the angle history along with the wheel, at each frame; give frames a second."""
-    chart = page.get_by_role("img", name="Yaw over time").element_handle()
-    rate: float = page.evaluate(PAN, [chart, seconds])
+    """Move the angle history along with the wheel, at each frame, under the mouse; give frames a second."""
+    chart = page.get_by_role("img", name="Yaw over time")
+    chart.hover()
+    rate: float = page.evaluate(PAN, [chart.element_handle(), seconds])
     return rate
 
 

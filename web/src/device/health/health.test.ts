@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Reception } from "../../api/types";
-import { ends, lostChunks, rateColumns, reasons, usual } from "./health";
+import { ends, lostChunks, rateColumns, reasons, unusedPercent, usual } from "./health";
 
 const RECEPTION: Reception = {
   since: "2025-11-21T10:00:00Z",
@@ -25,6 +25,11 @@ it("tells reasons by their weight, with their share of everything that came", ()
     { reason: "duplicate_time", number: 150, percent: 1.5 },
     { reason: "fix_implausible", number: 50, percent: 0.5 },
   ]));
+
+it("adds up what was not used", () => {
+  expect(unusedPercent(RECEPTION)).toBeCloseTo(2);
+  expect(unusedPercent({ ...RECEPTION, rejected: {} })).toBe(0);
+});
 
 describe("usual", () => {
   it("is not misled by a few short chunks, and knows of none where nothing is known", () => {

@@ -21,6 +21,11 @@ export function reasons({ rejected, samples, fixes }: Reception) {
     .map(([reason, number]) => ({ reason, number, percent: (100 * number) / all }));
 }
 
+/** How much of everything that came was not used. */
+export function unusedPercent(health: Reception): number {
+  return reasons(health).reduce((sum, { percent }) => sum + percent, 0);
+}
+
 /** How many chunks are lost. */
 export function lostChunks({ lost }: Reception): number {
   return lost.reduce((sum, { from_seq, to_seq }) => sum + to_seq - from_seq + 1, 0);

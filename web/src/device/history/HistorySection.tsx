@@ -1,6 +1,6 @@
 import { SegmentedControl } from "@mantine/core";
 import { ChartLine } from "lucide-react";
-import { useMemo } from "react";
+import { useMemo, useRef } from "react";
 import { useEstimates } from "../../api/history";
 import { useMounts } from "../../api/mounts";
 import { useDeviceAlerts } from "../../api/queries";
@@ -53,17 +53,32 @@ function Ranges({ chosen, choose }: { chosen: Range; choose: (range: Range) => v
 
 function History({ id, window }: { id: string; window: HistoryWindow }) {
   const estimates = useEstimates(id, window.wanted);
+  const known = useLast(estimates.data);
   const what = t("history.the_history");
-  if (estimates.isError) return <Failed what={what} error={estimates.error} retry={estimates.refetch} />;
-  if (!estimates.data) return <Loading what={what} lines={12} />;
-  if (estimates.data.time.length === 0 && window.view === null) {
+  const failed = estimates.isError && (
+    <Failed what={what} error={estimates.error} retry={estimates.refetch} />
+  );
+  if (!known) return failed || <Loading what={what} lines={12} />;
+  if (known.time.length === 0 && window.view === null) {
     return (
       <Empty icon={ChartLine} title={t("history.no_angles")}>
         {t("history.begins")}
       </Empty>
     );
   }
-  return <Loaded id={id} window={window} estimates={estimates.data} />;
+  return (
+    <>
+      {failed}
+      <Loaded id={id} window={window} estimates={known} />
+    </>
+  );
+}
+
+/** What was loaded last: who moves to where nothing can be loaded must be able to move back. */
+function useLast(estimates: Estimates | undefined): Estimates | undefined {
+  const last = useRef(estimates);
+  if (estimates) last.current = estimates;
+  return last.current;
 }
 
 function Loaded({ id, window, estimates }: { id: string; window: HistoryWindow; estimates: Estimates }) {

@@ -191,6 +191,7 @@ export const history = {
     arrived: "Every chunk has arrived",
     missing_one: "{{number}} chunk is lost",
     missing_other: "{{number}} chunks are lost",
+    unused: "{{percent}} % of what came was not used",
     waiting_one: "{{number}} chunk waits for an earlier one",
     waiting_other: "{{number}} chunks wait for earlier ones",
     waiting_about:

@@ -194,6 +194,7 @@ export const history: Translated<typeof en.history> = {
     arrived: "Ogni blocco è arrivato",
     missing_one: "{{number}} blocco è andato perso",
     missing_other: "{{number}} blocchi sono andati persi",
+    unused: "Il {{percent}} % di quanto è arrivato non è stato usato",
     waiting_one: "{{number}} blocco ne attende uno precedente",
     waiting_other: "{{number}} blocchi ne attendono di precedenti",
     waiting_about:
