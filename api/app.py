@@ -15,7 +15,6 @@ from typing import Any, TypedDict
 import anyio
 from anyio import to_thread
 from fastapi import FastAPI
-from starlette.middleware.gzip import GZipMiddleware
 
 from api import errors, headers, metrics, page, rates, tracing
 from api.live import Hub
@@ -70,7 +69,7 @@ def create_app(
     app.router.routes.append(PlainUploads())
     app.include_router(service.router)
     app.include_router(api)
-    app.router.default = GZipMiddleware(page.Page(app.router.default, page.STATIC))
+    app.router.default = page.Page(app.router.default, page.STATIC)
     app.add_middleware(Limits, gate=gate)
     app.add_middleware(rates.RateHeaders, rates=allowed)
     app.add_middleware(headers.SecurityHeaders)

@@ -1,7 +1,12 @@
-"""The built page: files with a hash in their name are kept for ever, the rest is asked for anew."""
+"""The built page: files with a hash in their name are kept for ever, the rest is asked for anew.
 
+Beside most files stand the same compressed, made when the page was built; a browser gets the smallest it takes.
+"""
+
+from mimetypes import guess_type
 from pathlib import Path
 
+from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.responses import PlainTextResponse, Response
 from starlette.staticfiles import StaticFiles
@@ -10,6 +15,8 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 STATIC = Path(__file__).parent / "static"
 HASHED = "/assets/"
 NOT_BUILT = "The page is not built: run `make setup`. The API is at /api/v1 and described at /openapi.json.\n"
+COMPRESSED = {"br": ".br", "gzip": ".gz"}
+"""endings of compressed files by their content coding, the smallest first"""
 
 
 class Page:
@@ -33,11 +40,28 @@ class Page:
         if not self.start.is_file():
             return PlainTextResponse(NOT_BUILT, 404)
         try:
-            response = await self.files.get_response(self.files.get_path(scope), scope)
+            response = await self._file(self.files.get_path(scope), scope)
         except HTTPException:
             if "." in scope["path"].rsplit("/", 1)[-1]:
                 raise
-            response = await self.files.get_response("index.html", scope)
+            response = await self._file("index.html", scope)
         immutable = scope["path"].startswith(HASHED)
         response.headers["Cache-Control"] = "public, max-age=31536000, immutable" if immutable else "no-cache"
         return response
+
+    async def _file(self, path: str, scope: Scope) -> Response:
+        accepted = _codings(Headers(scope=scope).get("accept-encoding", ""))
+        for coding, ending in COMPRESSED.items():
+            if coding in accepted and self.files.lookup_path(path + ending)[1] is not None:
+                response = await self.files.get_response(path + ending, scope)
+                kind = guess_type(path)[0] or "application/octet-stream"
+                told = {"Content-Encoding": coding, "Content-Type": kind, "Vary": "Accept-Encoding"}
+                response.headers.update(told)
+                return response
+        return await self.files.get_response(path, scope)
+
+
+def _codings(accepted: str) -> set[str]:
+    """Give the content codings that a client takes (RFC 9110, 12.5.3); one with the weight 0 it does not."""
+    parts = [part.replace(" ", "").lower().partition(";q=") for part in accepted.split(",")]
+    return {coding for coding, _, weight in parts if weight.strip("0.") or not weight}

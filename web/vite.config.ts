@@ -9,6 +9,7 @@ import {
 } from "@mantine/core";
 import react from "@vitejs/plugin-react";
 import type { Plugin } from "vite";
+import { compression } from "vite-plugin-compression2";
 import { defineConfig } from "vitest/config";
 import { colours, theme } from "./src/app/theme.ts";
 
@@ -53,7 +54,13 @@ function themeCss(merged: MantineTheme): string {
 }
 
 export default defineConfig({
-  plugins: [react(), themeVariables(), swagger()],
+  plugins: [
+    react(),
+    themeVariables(),
+    swagger(),
+    // beside each file, so that the service need not compress it for every visit
+    compression({ algorithms: ["gzip", "brotliCompress"], include: /\.(css|js|svg|html)$/ }),
+  ],
   build: {
     outDir: "../api/static",
     emptyOutDir: true,

@@ -34,9 +34,7 @@ def list_devices(
     alert_severity: Annotated[
         schemas.Severity | None, Query(description="With an open alert of this severity; of that kind, if both.")
     ] = None,
-    mount_status: Annotated[
-        schemas.CurrentMountStatus | None, Query(description="With a mounting that is so.")
-    ] = None,
+    mount_status: Annotated[schemas.CurrentMountStatus | None, Query(description="With a mounting that is so.")] = None,
     sort: Annotated[
         schemas.DeviceOrder,
         Query(description="`-` turns the order round; a device that never sent data comes last either way."),

@@ -1,3 +1,4 @@
+import gzip
 import threading
 from pathlib import Path
 
@@ -111,6 +112,7 @@ def built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (directory / "swagger").mkdir()
     (directory / "index.html").write_text("<p>start</p>")
     (directory / "assets" / "app-1a2b.js").write_text("1;" * 500)
+    (directory / "assets" / "app-1a2b.js.gz").write_bytes(gzip.compress(b"1;" * 500))
     (tmp_path / "secret.txt").write_text("secret")
     monkeypatch.setattr(page, "STATIC", directory)
     monkeypatch.setattr(service, "SWAGGER", directory / "swagger")
@@ -131,6 +133,31 @@ def test_the_page_finds_its_own_way(built: Path, client: TestClient) -> None:
     assert client.get("/assets/old-9z.js").status_code == 404
     assert client.head("/").status_code == 200
     assert client.post("/").status_code in {404, 405}
+
+
+@pytest.mark.parametrize(
+    ("accepted", "sent"),
+    [
+        ("gzip, deflate, br, zstd", "br"),
+        ("br;q=0, gzip;q=0.5", "gzip"),
+        ("GZIP", "gzip"),
+        ("gzip;q=0, br;q=0.000", None),
+        ("identity", None),
+        ("", None),
+    ],
+)
+def test_the_smallest_file_that_the_browser_takes_is_sent(
+    built: Path, client: TestClient, accepted: str, sent: str | None
+) -> None:
+    for ending in ("br", "gz"):
+        (built / "assets" / f"app-1a2b.js.{ending}").write_text(f"compressed: {ending}")
+    with client.stream("GET", "/assets/app-1a2b.js", headers={"Accept-Encoding": accepted}) as answer:
+        content = b"".join(answer.iter_raw())
+    assert answer.headers.get("content-encoding") == sent
+    assert content == {"br": b"compressed: br", "gzip": b"compressed: gz", None: b"1;" * 500}[sent]
+    assert answer.headers["content-type"].startswith("text/javascript")
+    assert (answer.headers.get("vary") == "Accept-Encoding") == (sent is not None)
+    assert "immutable" in answer.headers["cache-control"]
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import { keys } from "../api/keys";
 import { atLeast, useSession } from "../api/session";
 import type { Role, SignedIn } from "../api/types";
 import { Failed, Loading } from "../components/States";
-import { t, useLanguage } from "../text";
+import { openRooms, type Room, t, useLanguage } from "../text";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { LiveProvider } from "./Live";
 import { NotFound } from "./NotFound";
@@ -16,13 +16,33 @@ import { SignIn } from "./SignIn";
 import { useScroll } from "./scroll";
 import { theme } from "./theme";
 
-/** Each page comes when it is first opened, so that the first one is there soon. */
-const DevicesPage = lazy(() => import("../devices/DevicesPage").then((m) => ({ default: m.DevicesPage })));
-const DevicePage = lazy(() => import("../device/DevicePage").then((m) => ({ default: m.DevicePage })));
-const AlertsPage = lazy(() => import("../alerts/AlertsPage").then((m) => ({ default: m.AlertsPage })));
-const SettingsPage = lazy(() =>
-  import("../settings/SettingsPage").then((m) => ({ default: m.SettingsPage })),
+/** Each page comes, with its texts, when it is first opened, so that the first one is there soon. */
+const DevicesPage = page(() => import("../devices/DevicesPage").then((m) => m.DevicesPage), "devices");
+const DevicePage = page(
+  () => import("../device/DevicePage").then((m) => m.DevicePage),
+  "device",
+  "history",
+  "mounting",
+  "alerts",
 );
+const AlertsPage = page(
+  () => import("../alerts/AlertsPage").then((m) => m.AlertsPage),
+  "alerts",
+  "history",
+  "mounting",
+);
+const SettingsPage = page(
+  () => import("../settings/SettingsPage").then((m) => m.SettingsPage),
+  "settings",
+  "alerts",
+);
+
+function page<P>(load: () => Promise<ComponentType<P>>, ...rooms: Room[]) {
+  return lazy(async () => {
+    const [component] = await Promise.all([load(), openRooms(...rooms)]);
+    return { default: component };
+  });
+}
 
 /** A refusal (4xx) is an answer; only silence and the service's own trouble are worth another try. */
 function worthRetrying(count: number, error: Error): boolean {
@@ -79,17 +99,17 @@ function Pages({ session }: { session: SignedIn }) {
   useScroll();
   const own = session.device_id;
   const home = own === null ? "/devices" : `/devices/${encodeURIComponent(own)}`;
-  const page = (needed: Role, Page: ComponentType) =>
+  const allowed = (needed: Role, Page: ComponentType) =>
     own === null && atLeast(session.role, needed) ? <Page /> : <Redirect to={home} replace />;
   return (
     <Switch>
       <Route path="/">
         <Redirect to={home} replace />
       </Route>
-      <Route path="/devices">{page("installer", DevicesPage)}</Route>
+      <Route path="/devices">{allowed("installer", DevicesPage)}</Route>
       <Route path="/devices/:id">{({ id }) => <DevicePage key={id} id={id} />}</Route>
-      <Route path="/alerts">{page("manager", AlertsPage)}</Route>
-      <Route path="/settings/*?">{page("installer", SettingsPage)}</Route>
+      <Route path="/alerts">{allowed("manager", AlertsPage)}</Route>
+      <Route path="/settings/*?">{allowed("installer", SettingsPage)}</Route>
       <Route>
         <NotFound title={t("shell.nowhere")} />
       </Route>

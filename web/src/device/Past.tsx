@@ -1,7 +1,7 @@
-import { useIntersection } from "@mantine/hooks";
-import { type ComponentType, lazy, Suspense, useState } from "react";
+import { type ComponentType, lazy } from "react";
 import { Section } from "../components/Section";
 import { Failed, Loading } from "../components/States";
+import { WhenSeen } from "../components/WhenSeen";
 import { t } from "../text";
 
 interface PastProps {
@@ -12,33 +12,17 @@ interface PastProps {
 const HistorySection = later<PastProps>("history.title", () => import("./history/HistorySection"));
 const HealthSection = later<{ id: string }>("history.health.title", () => import("./health/HealthSection"));
 
-/** What the device has been through. Its program comes after the upper half, its data health when somebody scrolls there. */
+/** What the device has been through, and what became of its data. */
 export function Past({ id, lastData }: PastProps) {
   return (
     <>
-      <Suspense fallback={<Coming title={t("history.title")} lines={14} />}>
+      <WhenSeen before={<Coming title={t("history.title")} lines={14} />}>
         <HistorySection id={id} lastData={lastData} />
-      </Suspense>
-      <WhenSeen id={id} />
+      </WhenSeen>
+      <WhenSeen before={<Coming title={t("history.health.title")} lines={10} />}>
+        <HealthSection id={id} />
+      </WhenSeen>
     </>
-  );
-}
-
-function WhenSeen({ id }: { id: string }) {
-  const { ref, entry } = useIntersection({ rootMargin: "300px" });
-  const [seen, setSeen] = useState(false);
-  if (!seen && entry?.isIntersecting) setSeen(true);
-  const coming = <Coming title={t("history.health.title")} lines={10} />;
-  return (
-    <div ref={ref}>
-      {seen ? (
-        <Suspense fallback={coming}>
-          <HealthSection id={id} />
-        </Suspense>
-      ) : (
-        coming
-      )}
-    </div>
   );
 }
 

@@ -4,10 +4,10 @@ import type { Vector } from "../lib/rotation";
 import { duration, onTheClock } from "../lib/time";
 import { pointing } from "../lib/words";
 import { t } from "../text";
-import { en } from "../text/en";
+import { history } from "../text/en/history";
 import { type AlertData, isNumbers, moment, shortened } from "./evidence";
 
-const TEXTS = en.history.evidence;
+const TEXTS = history.evidence;
 type Label = keyof typeof TEXTS.label;
 type Words = (value: unknown, data: AlertData) => string;
 

@@ -1,4 +1,5 @@
-/** Before the tests: they read what an Englishman reads. */
-import { startText } from ".";
+/** Before the tests: they read what an Englishman reads, in every room. */
+import { openRooms, startText } from ".";
 
 await startText("en");
+await openRooms("alerts", "device", "devices", "history", "mounting", "settings");

@@ -3,6 +3,7 @@ import type { CSSProperties } from "react";
 import type { Installation } from "../../api/types";
 import { Section } from "../../components/Section";
 import { Empty } from "../../components/States";
+import { WhenSeen } from "../../components/WhenSeen";
 import { degreesText } from "../../lib/format";
 import { t } from "../../text";
 import { shownMounting } from "../shown";
@@ -18,7 +19,9 @@ export function UncertaintySection({ installation }: { installation: Installatio
       {shown ? (
         <>
           <Sigmas sigma={shown.sigma} limits={sigmaLimits(installation.limits)} />
-          <SigmaChart installation={installation} />
+          <WhenSeen before={null}>
+            <SigmaChart installation={installation} />
+          </WhenSeen>
           <p className={css.note}>{t("device.sure.note")}</p>
         </>
       ) : (
