@@ -46,6 +46,7 @@ class Page:
                 raise
             response = await self._file("index.html", scope)
         immutable = scope["path"].startswith(HASHED)
+        response.headers["Vary"] = "Accept-Encoding"
         response.headers["Cache-Control"] = "public, max-age=31536000, immutable" if immutable else "no-cache"
         return response
 
@@ -55,8 +56,7 @@ class Page:
             if coding in accepted and self.files.lookup_path(path + ending)[1] is not None:
                 response = await self.files.get_response(path + ending, scope)
                 kind = guess_type(path)[0] or "application/octet-stream"
-                told = {"Content-Encoding": coding, "Content-Type": kind, "Vary": "Accept-Encoding"}
-                response.headers.update(told)
+                response.headers.update({"Content-Encoding": coding, "Content-Type": kind})
                 return response
         return await self.files.get_response(path, scope)
 
