@@ -195,6 +195,30 @@ def test_what_is_unread_stands_in_the_title_of_every_page(visitor: Visitor, api:
     expect(page).to_have_title("About · Livella")
 
 
+def test_the_title_counts_on_while_nobody_looks_at_the_page(visitor: Visitor, api: Api, service: Service) -> None:
+    api.add_device("van-1")
+    api.add_device("van-2")
+    lose_gps(service, "van-1")
+    page = visitor.page
+    page.clock.install()
+    visitor.sign_in(key_of(api, "manager", "Anna"))
+    visitor.open("/settings/about")
+    expect(page).to_have_title("(1) About · Livella")
+    page.evaluate(LOOK_AWAY)
+    page.clock.run_for(31_000)
+    visitor.see("Paused")
+    lose_gps(service, "van-2")
+    page.clock.run_for(61_000)
+    expect(page).to_have_title("(2) About · Livella")
+
+
+LOOK_AWAY = """() => {
+    Object.defineProperty(document, "hidden", { value: true });
+    Object.defineProperty(document, "visibilityState", { value: "hidden" });
+    document.dispatchEvent(new Event("visibilitychange"));
+}"""
+
+
 def test_who_may_not_read_alerts_is_not_told_of_them(visitor: Visitor, api: Api, service: Service) -> None:
     own = api.add_device("van-1")
     lose_gps(service, "van-1")

@@ -40,7 +40,7 @@ export function SettleDialog({ alerts, verb, onClose }: SettleDialogProps) {
   const [count, number] = [alerts.length, whole(alerts.length)];
   const running = settle.isPending ? settle.variables.alerts.length : 0;
   return (
-    <Dialog opened onClose={close} title={t(`alerts.settle.${verb}_title`, { count, number })}>
+    <Dialog onClose={close} title={t(`alerts.settle.${verb}_title`, { count, number })}>
       {settle.data ? (
         <SettleReport report={judged(settle.data)} onAgain={run} onClose={close} />
       ) : (

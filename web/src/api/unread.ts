@@ -1,5 +1,5 @@
 /** Alerts that were opened since this browser last looked at the list of alerts, by the service's clock. */
-import { useLocalStorage } from "@mantine/hooks";
+import { useDocumentVisibility, useLocalStorage } from "@mantine/hooks";
 import { useQuery } from "@tanstack/react-query";
 import { answer, http } from "./http";
 import { keys } from "./keys";
@@ -7,6 +7,8 @@ import { useMay } from "./session";
 import type { Alert, Page } from "./types";
 
 const STORED = "livella-alerts-seen";
+/** ms; the live stream rests while nobody looks at the page, but just then its title is read. */
+const HIDDEN_LOOK = 60_000;
 /** "99+" is said of more. */
 export const MOST = 99;
 
@@ -22,10 +24,13 @@ function useSeen() {
 /** The unread alerts, newest first and a few more than are counted; nothing for those who may not read alerts. */
 export function useUnread(): { unread: Alert[]; markSeen: () => void } {
   const [seen, setSeen] = useSeen();
+  const hidden = useDocumentVisibility() === "hidden";
   const { data } = useQuery({
     queryKey: keys.unread,
     queryFn: () => readSince(seen),
     enabled: useMay("manager"),
+    refetchInterval: hidden ? HIDDEN_LOOK : false,
+    refetchIntervalInBackground: true,
   });
   const unread = data ? openedAfter(data, seen) : [];
   const newest = unread[0]?.opened_at;

@@ -1,31 +1,14 @@
-import { Modal } from "@mantine/core";
-import { useMediaQuery } from "@mantine/hooks";
-import type { ReactNode } from "react";
-import { t } from "../text";
+import { lazy, Suspense } from "react";
+import type { DialogProps } from "./DialogWindow";
 
-interface DialogProps {
-  opened: boolean;
-  onClose: () => void;
-  title: string;
-  /** it closes only by its buttons: there is something in it that is shown this once */
-  stays?: boolean;
-  children: ReactNode;
-}
+/** What traps the focus and holds the page still comes when the first dialog is opened. */
+const DialogWindow = lazy(() => import("./DialogWindow").then((m) => ({ default: m.DialogWindow })));
 
-/** A dialog in the middle of a desk's screen, all over a phone's. */
-export function Dialog({ opened, onClose, title, stays = false, children }: DialogProps) {
-  const phone = useMediaQuery("(max-width: 36em)", false, { getInitialValueInEffect: false });
+/** A dialog, open while it is rendered: in the middle of a desk's screen, all over a phone's. */
+export function Dialog(props: DialogProps) {
   return (
-    <Modal
-      opened={opened}
-      onClose={onClose}
-      title={title}
-      fullScreen={phone}
-      closeOnClickOutside={!stays}
-      closeOnEscape={!stays}
-      closeButtonProps={{ "aria-label": t("common.close") }}
-    >
-      {children}
-    </Modal>
+    <Suspense fallback={null}>
+      <DialogWindow {...props} />
+    </Suspense>
   );
 }

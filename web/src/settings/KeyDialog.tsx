@@ -29,7 +29,6 @@ export function KeyDialog({ onClose }: { onClose: () => void }) {
   const made = make.data;
   return (
     <Dialog
-      opened
       onClose={onClose}
       title={t(made ? "settings.keys.made" : "settings.keys.make")}
       stays={made !== undefined}

@@ -1,15 +1,17 @@
-import { type ComponentType, useId } from "react";
+import { type ComponentType, lazy, Suspense, useId } from "react";
 import { Link, Redirect, useRoute } from "wouter";
 import { atLeast, useSession } from "../api/session";
 import type { Role } from "../api/types";
 import { useTitle } from "../app/title";
+import { Loading } from "../components/States";
 import { t } from "../text";
-import { AboutPage } from "./AboutPage";
-import { AuditPage } from "./AuditPage";
-import { KeysPage } from "./KeysPage";
 import css from "./settings.module.css";
-import { ThresholdsPage } from "./ThresholdsPage";
-import { WebhooksPage } from "./WebhooksPage";
+
+const AboutPage = lazy(() => import("./AboutPage").then((m) => ({ default: m.AboutPage })));
+const AuditPage = lazy(() => import("./AuditPage").then((m) => ({ default: m.AuditPage })));
+const KeysPage = lazy(() => import("./KeysPage").then((m) => ({ default: m.KeysPage })));
+const ThresholdsPage = lazy(() => import("./ThresholdsPage").then((m) => ({ default: m.ThresholdsPage })));
+const WebhooksPage = lazy(() => import("./WebhooksPage").then((m) => ({ default: m.WebhooksPage })));
 
 interface Place {
   name: "keys" | "webhooks" | "thresholds" | "audit" | "about";
@@ -54,7 +56,9 @@ function Shown({ place, allowed }: { place: Place; allowed: readonly Place[] }) 
       </nav>
       <section className={css.content} aria-labelledby={heading}>
         <h2 id={heading}>{title}</h2>
-        <Page />
+        <Suspense fallback={<Loading what={title} lines={6} />}>
+          <Page />
+        </Suspense>
       </section>
     </div>
   );

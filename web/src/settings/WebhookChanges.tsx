@@ -58,7 +58,7 @@ interface SecretProps {
 /** The secret of a webhook, shown this once. */
 export function SecretDialog({ name, secret, onClose }: SecretProps) {
   return (
-    <Dialog opened onClose={onClose} title={t("settings.webhooks.secret_title", { name })} stays>
+    <Dialog onClose={onClose} title={t("settings.webhooks.secret_title", { name })} stays>
       <Once
         title={t("settings.webhooks.secret_once")}
         about={t("settings.webhooks.secret_about")}

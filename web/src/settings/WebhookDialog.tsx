@@ -38,7 +38,6 @@ export function WebhookDialog({ webhook, onClose }: WebhookDialogProps) {
   };
   return (
     <Dialog
-      opened
       onClose={onClose}
       title={t(webhook ? "settings.webhooks.edit_title" : "settings.webhooks.add_title")}
     >
