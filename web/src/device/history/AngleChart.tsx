@@ -1,5 +1,5 @@
 import { useComputedColorScheme } from "@mantine/core";
-import { useEffect, useRef, useState } from "react";
+import { memo, useEffect, useRef, useState } from "react";
 import type uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { wrap } from "../../lib/angles";
@@ -31,24 +31,36 @@ interface AngleChartProps {
 export function AngleChart(props: AngleChartProps) {
   const { angle, history, view } = props;
   const [row, setRow] = useState<number | null>(null);
-  const element = usePlot(props, setRow);
   const shown = reading(history, angle, row, view);
-  const last = reading(history, angle, null, view);
-  const word = t(`common.${angle}`);
   return (
     <figure className={css.chart} style={{ "--angle": `var(--livella-${AXIS[angle]})` }}>
       <figcaption>
-        <i aria-hidden /> <b>{word}</b> {shown.value} <span>{shown.when}</span>
+        <i aria-hidden /> <b>{t(`common.${angle}`)}</b> {shown.value} <span>{shown.when}</span>
       </figcaption>
-      <div ref={element} role="img" aria-label={t("history.over_time", { angle: word, value: last.value })} />
+      <Plot {...props} onCursor={setRow} />
     </figure>
   );
 }
 
-function usePlot(
-  { angle, history, marks, time, view, first, last, onReset }: AngleChartProps,
-  onCursor: (row: number | null) => void,
-) {
+interface PlotProps extends AngleChartProps {
+  onCursor: (row: number | null) => void;
+}
+
+/** The chart itself, left alone while only the cursor moves. */
+const Plot = memo(function Plot(props: PlotProps) {
+  const { angle, history, view } = props;
+  const element = usePlot(props);
+  const { value } = reading(history, angle, null, view);
+  return (
+    <div
+      ref={element}
+      role="img"
+      aria-label={t("history.over_time", { angle: t(`common.${angle}`), value })}
+    />
+  );
+});
+
+function usePlot({ angle, history, marks, time, view, first, last, onReset, onCursor }: PlotProps) {
   const element = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot>(null);
   const band = history.angles[angle];
