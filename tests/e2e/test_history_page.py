@@ -285,7 +285,7 @@ def test_a_mounting_unfolds(page: Page, moved: Device) -> None:
 
 def test_evidence_has_names_and_units(page: Page) -> None:
     alerts = page.get_by_role("region", name="Alerts")
-    alerts.get_by_text("Evidence").click()
+    alerts.get_by_text("Details").click()
     for name, value in {"Turned by": r"\d+°", "Mounting in doubt": "no. 1", "Its uncertainty, 1 σ": "roll .*°"}.items():
         row = alerts.locator("dl > div").filter(has_text=name)
         expect(row).to_contain_text(re.compile(value))
@@ -307,7 +307,7 @@ def test_everybody_can_use_it_in_italian_too(visitor: Visitor, page: Page) -> No
     mounts = page.get_by_role("region", name="Montaggi confermati")
     expect(mounts).to_contain_text(re.compile(r"Prova su strada superata: errore di velocità di \d,\d km/h"))
     alerts = page.get_by_role("region", name="Avvisi")
-    alerts.get_by_text("Che cosa si è visto").click()
+    alerts.get_by_text("Dettagli").click()
     expect(alerts).to_contain_text("Girato di")
     page.get_by_role("region", name="Salute dei dati").scroll_into_view_if_needed()
     visitor.see("Ogni blocco è arrivato")

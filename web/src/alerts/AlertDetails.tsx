@@ -28,7 +28,7 @@ export function AlertDetails({ alert, showDevice, unfolded }: AlertDetailsProps)
           <Words alert={alert} />
           <History alert={alert} />
           <Suspense fallback={null}>
-            <Evidence data={alert.data} unfolded />
+            <Evidence kind={alert.kind} data={alert.data} unfolded />
           </Suspense>
           {showDevice && <Links alert={alert} />}
         </>

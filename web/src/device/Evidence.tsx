@@ -1,4 +1,5 @@
 import { Suspense, useMemo, useState } from "react";
+import type { Alert } from "../api/types";
 import { optional } from "../components/optional";
 import { t } from "../text";
 import { type AlertData, evidenceSeries } from "./evidence";
@@ -8,14 +9,13 @@ import { evidenceRows } from "./evidenceRows";
 const EvidenceChart = optional(() => import("./EvidenceChart"));
 
 interface EvidenceProps {
-  /** what kind of alert it is; without it what was measured has a general name */
-  kind?: string;
+  kind: Alert["kind"];
   data: AlertData;
   unfolded: boolean;
 }
 
 /** What is behind an alert: the chart a test decided on, and the numbers, folded away once it is over. */
-export function Evidence({ kind = "", data, unfolded }: EvidenceProps) {
+export function Evidence({ kind, data, unfolded }: EvidenceProps) {
   const series = useMemo(() => evidenceSeries(data), [data]);
   const [open, setOpen] = useState(unfolded && series !== null);
   const rows = evidenceRows(data, kind);

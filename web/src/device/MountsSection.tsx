@@ -33,7 +33,7 @@ export function MountsSection({ id }: { id: string }) {
       </ol>
       {hidden > 0 && (
         <Button variant="subtle" mt="sm" onClick={() => setAll(true)}>
-          {t("history.mounts.more", { count: hidden, number: whole(hidden) })}
+          {t("history.more", { count: hidden, number: whole(hidden) })}
         </Button>
       )}
       {hidden === 0 && mounts.hasNextPage && (

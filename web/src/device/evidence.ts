@@ -1,5 +1,4 @@
 /** What a test saw before it raised an alert, as data for a chart and in words. */
-import type { Alert } from "../api/types";
 import { significant } from "../lib/format";
 import { toTheSecond } from "../lib/time";
 import { t } from "../text";
@@ -51,11 +50,6 @@ export function evidenceText({ time, value, threshold }: EvidenceSeries): string
 export function evidenceRange({ value, threshold }: EvidenceSeries): [number, number] {
   const least = Math.min(0, ...value);
   return [least, least + 1.15 * (Math.max(threshold, ...value) - least)];
-}
-
-/** What an alert is about, in two or three words. */
-export function kindWord(kind: Alert["kind"]): string {
-  return t(`history.alert.kind.${kind}`);
 }
 
 /** Numbers to four digits, lists of them likewise. */

@@ -2,7 +2,6 @@
 import type { Alert, Estimates, Mount } from "../../api/types";
 import { stageWord } from "../../lib/stages";
 import { t } from "../../text";
-import { kindWord } from "../evidence";
 import type { Span } from "./span";
 
 /** The most important first: where there is room for one flag only, it is that one's. */
@@ -68,7 +67,7 @@ function mountMark({ id, confirmed_at }: Mount): Mark {
 }
 
 function alertMarks(alert: Alert, zeros: ReadonlyMap<string, number>): Mark[] {
-  const what = kindWord(alert.kind);
+  const what = t(`alerts.kind.${alert.kind}`);
   const opened: Mark = {
     kind: "opened",
     time: foundAt(alert, zeros),

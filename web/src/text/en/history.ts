@@ -59,6 +59,9 @@ export const history = {
     resolved: "Alert resolved: {{what}}",
   },
 
+  more_one: "Show {{number}} more",
+  more_other: "Show {{number}} more",
+
   mounts: {
     title: "Confirmed mountings",
     the_mountings: "the mountings",
@@ -76,8 +79,6 @@ export const history = {
     session: "Session",
     no_session: "The history of that drive is no longer kept, so its session is not known.",
     the_session: "the session",
-    more_one: "Show {{number}} more",
-    more_other: "Show {{number}} more",
     older: "Show older ones",
   },
 
@@ -88,20 +89,7 @@ export const history = {
     open_one: "One open alert",
     open_other: "{{number}} open alerts",
     ask_manager: "A fleet manager can read what was found.",
-    began: "began <when />",
-    seen_one: "seen once",
-    seen_other: "seen {{number}} times",
-    state: { open: "Open", acknowledged: "Acknowledged", resolved: "Resolved" },
-    kind: {
-      orientation_changed: "Device turned",
-      device_loose: "Device loose",
-      calibration_stalled: "Calibration stalled",
-      verification_failing: "Drive tests failing",
-      gps_lost: "GPS lost",
-      sensor_fault: "Sensor fault",
-      device_silent: "Device silent",
-      clock_fault: "Clock fault",
-    },
+    all: "All alerts of this device",
   },
 
   evidence: {

@@ -61,6 +61,9 @@ export const history: Translated<typeof en.history> = {
     resolved: "Avviso risolto: {{what}}",
   },
 
+  more_one: "Mostra un altro ({{number}})",
+  more_other: "Mostra altri {{number}}",
+
   mounts: {
     title: "Montaggi confermati",
     the_mountings: "i montaggi",
@@ -80,8 +83,6 @@ export const history: Translated<typeof en.history> = {
     session: "Sessione",
     no_session: "Lo storico di quella guida non è più conservato, perciò la sessione non è nota.",
     the_session: "la sessione",
-    more_one: "Mostra un altro ({{number}})",
-    more_other: "Mostra altri {{number}}",
     older: "Mostra i precedenti",
   },
 
@@ -92,20 +93,7 @@ export const history: Translated<typeof en.history> = {
     open_one: "Un avviso aperto",
     open_other: "{{number}} avvisi aperti",
     ask_manager: "Un gestore della flotta può leggere che cosa è stato trovato.",
-    began: "iniziato <when />",
-    seen_one: "visto una volta",
-    seen_other: "visto {{number}} volte",
-    state: { open: "Aperto", acknowledged: "Preso in carico", resolved: "Risolto" },
-    kind: {
-      orientation_changed: "Dispositivo girato",
-      device_loose: "Dispositivo allentato",
-      calibration_stalled: "Calibrazione ferma",
-      verification_failing: "Prove su strada fallite",
-      gps_lost: "GPS perso",
-      sensor_fault: "Guasto del sensore",
-      device_silent: "Dispositivo muto",
-      clock_fault: "Orologio guasto",
-    },
+    all: "Tutti gli avvisi di questo dispositivo",
   },
 
   evidence: {
