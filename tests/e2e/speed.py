@@ -111,6 +111,7 @@ def history(number: int) -> Rows:
 
 def open_long_history(page: Page) -> None:
     """Zoom into everything there is, with all of it loaded."""
+    page.get_by_role("region", name="Angle history").scroll_into_view_if_needed()
     page.locator("label", has_text="Everything").click()
     page.get_by_role("button", name="Zoom in").click()
     expect(page.get_by_text(f"{POINTS:,} estimates loaded")).to_be_visible(timeout=30_000)

@@ -130,6 +130,7 @@ def test_the_uncertainty_shrinks_before_ones_eyes(installer: Visitor, api: Api) 
     page = open_device(installer)
     sure = page.get_by_role("region", name="How sure")
     expect(sure).to_contain_text("three curves appear here")
+    sure.scroll_into_view_if_needed()
     for seq, body in enumerate(drives.chunks()[:2]):
         device.send(body, seq, expect=200)
     chart = sure.get_by_role("img", name="Uncertainty over time")

@@ -104,6 +104,7 @@ def test_a_device_is_followed_to_confirmed_without_reload(visitor: Visitor, inst
         visitor.see_stage(word)
         installer.see_stage(word)
     expect(visitor.page.get_by_role("status").filter(has_text="Stage: Confirmed")).to_have_count(1)
+    visitor.scroll_to("Angle history")
     expect(visitor.page.get_by_role("img", name="Yaw over time")).to_be_visible()
     expect(visitor.page.get_by_role("region", name="Confirmed mountings")).to_contain_text("In force")
     assert loads == [visitor.loads, installer.loads]
@@ -117,6 +118,7 @@ def test_the_history_is_zoomed_and_unzoomed(visitor: Visitor, api: Api) -> None:
     visitor.sign_in()
     visitor.open("/devices/van-1")
     page = visitor.page
+    visitor.scroll_to("Angle history")
     chart = page.get_by_role("img", name="Yaw over time")
     chart.scroll_into_view_if_needed()
     box = chart.bounding_box()

@@ -42,6 +42,7 @@ def page(visitor: Visitor, moved: Device) -> Page:
 def opened(visitor: Visitor, key: str = ADMIN_KEY) -> Page:
     visitor.sign_in(key)
     visitor.open("/devices/van-1")
+    visitor.scroll_to("Angle history")
     chart = visitor.page.get_by_role("img", name=CHART)
     expect(chart).to_be_visible(timeout=20_000)
     chart.scroll_into_view_if_needed()

@@ -63,6 +63,7 @@ def follow(chromium: Browser, address: str, api: Api, log: Path, name: str) -> F
         shown = shown_mounting(desk)
         assert degrees_between(shown, np.array(device.installation()["mount"]["quaternion"])) < 1e-3
         for somebody, width in ((desk, 1280), (phone, 360)):
+            somebody.scroll_to("Angle history")
             expect(somebody.page.get_by_role("img", name="Yaw over time")).to_be_visible()
             somebody.picture(f"{name}-{width}")
         return shown

@@ -77,6 +77,10 @@ class Visitor:
         """Wait until a text is on the page."""
         expect(self.page.get_by_text(text).first).to_be_visible(timeout=seconds * 1000)
 
+    def scroll_to(self, section: str) -> None:
+        """Bring a section into sight: some come only then."""
+        self.page.get_by_role("region", name=section).scroll_into_view_if_needed()
+
     def see_stage(self, word: str, seconds: float = 10.0) -> None:
         """Wait until a stage is the present one."""
         expect(self.page.locator("[aria-current=step]")).to_contain_text(word, timeout=seconds * 1000)
