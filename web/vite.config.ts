@@ -67,6 +67,10 @@ export default defineConfig({
     target: "es2022",
     // Everything is a file of its own: the service's content security policy allows no data: scripts or fonts.
     assetsInlineLimit: 0,
+    rolldownOptions: {
+      // What many parts share comes as one file, because a phone's network takes long to begin each; charts come later.
+      output: { codeSplitting: { groups: [{ name: "shared", minShareCount: 4, test: /^(?!.*uplot)/i }] } },
+    },
     // three.js, loaded only where the picture is shown.
     chunkSizeWarningLimit: 800,
   },

@@ -93,6 +93,7 @@ class _Scripts:
 
     def __init__(self) -> None:
         self._names: dict[str, str] = {}
+        self._heads: dict[str, int] = {}
         self._sizes: dict[str, int] = {}
 
     def began(self, event: dict[str, Any]) -> None:
@@ -100,10 +101,12 @@ class _Scripts:
         url = event["response"]["url"]
         if url.split("?")[0].endswith(".js"):
             self._names[event["requestId"]] = url
+            self._heads[event["requestId"]] = int(event["response"]["encodedDataLength"])
 
     def ended(self, event: dict[str, Any]) -> None:
         """An answer has come."""
-        self._sizes[event["requestId"]] = int(event["encodedDataLength"])
+        number = event["requestId"]
+        self._sizes[number] = int(event["encodedDataLength"]) - self._heads.get(number, 0)
 
     def size(self) -> int:
         """Give the bytes of all but the 3D part."""

@@ -1,10 +1,10 @@
 import { TriangleAlert } from "lucide-react";
-import { Suspense } from "react";
 import { useMay } from "../api/session";
 import { optional } from "../components/optional";
 import { Section } from "../components/Section";
 import { Loading } from "../components/States";
 import { Notice } from "../components/Tone";
+import { WhenSeen } from "../components/WhenSeen";
 import { whole } from "../lib/format";
 import { t } from "../text";
 import css from "./alerts.module.css";
@@ -17,9 +17,9 @@ export function AlertsSection({ id, open }: { id: string; open: number }) {
   return (
     <Section title={t("history.alert.title")}>
       {manager ? (
-        <Suspense fallback={<Loading what={t("history.alert.the_alerts")} />}>
+        <WhenSeen before={<Loading what={t("history.alert.the_alerts")} />}>
           <DeviceAlerts id={id} />
-        </Suspense>
+        </WhenSeen>
       ) : (
         <Count open={open} />
       )}

@@ -1,11 +1,12 @@
 import { CircleCheckBig, CircleX } from "lucide-react";
-import { Suspense, useMemo } from "react";
+import { useMemo } from "react";
 import type { Installation, Verification } from "../../api/types";
 import { optional } from "../../components/optional";
 import { Ring } from "../../components/Ring";
 import { Section } from "../../components/Section";
 import { Loading } from "../../components/States";
 import { Pill } from "../../components/Tone";
+import { WhenSeen } from "../../components/WhenSeen";
 import { fixed } from "../../lib/format";
 import { t } from "../../text";
 import { countdown, kmh, speeds, spokenOf } from "./trace";
@@ -25,9 +26,9 @@ export function VerificationSection({ installation }: { installation: Installati
         {test.state === "failed" && <p>{t("device.test.failed_why")}</p>}
         <SpeedError test={test} />
         {drawn && (
-          <Suspense fallback={<Loading what={t("device.test.the_chart")} />}>
+          <WhenSeen before={<Loading what={t("device.test.the_chart")} />}>
             <TraceLines speeds={drawn} />
-          </Suspense>
+          </WhenSeen>
         )}
       </div>
     </Section>
