@@ -274,7 +274,7 @@ def test_a_mounting_unfolds(page: Page, moved: Device) -> None:
     newest, first = (mounts.get_by_role("listitem").nth(i) for i in (0, 1))
     expect(newest).to_contain_text("In force")
     expect(newest).to_contain_text(
-        re.compile(r"Drive test passed: speed error \d\.\d km/h after \d+ s, \d+\.\d km/h allowed")
+        re.compile(r"Drive test passed: speed error \d\.\d\skm/h after \d+\ss, \d+\.\d\skm/h allowed")
     )
     first.get_by_text("Mounting 1: details").click()
     known = moved.get("mounts/1")
@@ -306,7 +306,7 @@ def test_everybody_can_use_it_in_italian_too(visitor: Visitor, page: Page) -> No
     region.get_by_text("Eventi nella vista").click()
     expect(region.get_by_role("list").last).to_contain_text("Fase: Verifica")
     mounts = page.get_by_role("region", name="Montaggi confermati")
-    expect(mounts).to_contain_text(re.compile(r"Prova su strada superata: errore di velocità di \d,\d km/h"))
+    expect(mounts).to_contain_text(re.compile(r"Prova su strada superata: errore di velocità di \d,\d\skm/h"))
     alerts = page.get_by_role("region", name="Avvisi")
     alerts.get_by_text("Dettagli").click()
     expect(alerts).to_contain_text("Girato di")

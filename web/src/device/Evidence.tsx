@@ -5,6 +5,7 @@ import { t } from "../text";
 import { type AlertData, evidenceSeries } from "./evidence";
 import css from "./evidence.module.css";
 import { evidenceRows } from "./evidenceRows";
+import fold from "./fold.module.css";
 
 const EvidenceChart = optional(() => import("./EvidenceChart"));
 
@@ -22,7 +23,7 @@ export function Evidence({ kind, data, unfolded }: EvidenceProps) {
   if (rows.length === 0) return null;
   return (
     <details className={css.evidence} open={open} onToggle={(event) => setOpen(event.currentTarget.open)}>
-      <summary>{t("history.evidence.title")}</summary>
+      <summary className={fold.line}>{t("history.evidence.title")}</summary>
       {open && series && (
         <Suspense fallback={<div className={css.coming} />}>
           <EvidenceChart series={series} />

@@ -9,6 +9,7 @@ import { Pill } from "../components/Tone";
 import { degreesText, fixed, whole } from "../lib/format";
 import type { Tone } from "../lib/stages";
 import { t } from "../text";
+import fold from "./fold.module.css";
 import css from "./mounts.module.css";
 import { kmh, speeds } from "./verification/trace";
 
@@ -40,7 +41,7 @@ export function MountRow({ id, mount }: { id: string; mount: Mount }) {
       </p>
       <p className={css.quiet}>{testWords(mount)}</p>
       <details onToggle={(event) => setOpen(event.currentTarget.open)}>
-        <summary>{t("history.mounts.details", { number: mount.id })}</summary>
+        <summary className={fold.line}>{t("history.mounts.details", { number: mount.id })}</summary>
         {open && <Details id={id} mount={mount} />}
       </details>
     </>

@@ -3,6 +3,7 @@ import { Copyable } from "../../components/Copyable";
 import { ClockTime } from "../../components/RelativeTime";
 import { whole } from "../../lib/format";
 import { t } from "../../text";
+import fold from "../fold.module.css";
 import { MOST_SESSIONS } from "./health";
 import css from "./health.module.css";
 
@@ -12,8 +13,8 @@ type Session = Reception["sessions"][number];
 export function Sessions({ health: { sessions } }: { health: Reception }) {
   if (sessions.length === 0) return null;
   return (
-    <details className={css.sessions}>
-      <summary>
+    <details>
+      <summary className={fold.line}>
         {t("history.health.sessions.title")} ({whole(sessions.length)})
       </summary>
       <ul className={css.list}>

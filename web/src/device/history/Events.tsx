@@ -1,6 +1,7 @@
 import { whole } from "../../lib/format";
 import { onTheClock } from "../../lib/time";
 import { t } from "../../text";
+import fold from "../fold.module.css";
 import { Line } from "./Charts";
 import css from "./history.module.css";
 import { type Mark, within } from "./marks";
@@ -25,7 +26,7 @@ export function Events({ marks, span, time }: EventsProps) {
   const number = whole(seen.length);
   return (
     <details className={css.events}>
-      <summary>
+      <summary className={fold.line}>
         {seen.length > MOST
           ? t("history.event.list_cut", { number, most: whole(MOST) })
           : t("history.event.list", { number })}

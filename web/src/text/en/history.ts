@@ -71,8 +71,10 @@ export const history = {
     superseded: "Superseded",
     angles: "Roll {{roll}}, pitch {{pitch}}, yaw {{yaw}}",
     sigma: "± {{roll}}, {{pitch}} and {{yaw}}",
-    passed: "Drive test passed: speed error {{error}} km/h after {{seconds}} s, {{limit}} km/h allowed.",
-    tested: "Drive test: speed error {{error}} km/h after {{seconds}} s, {{limit}} km/h allowed.",
+    passed:
+      "Drive test passed: speed error {{error}}\u00a0km/h after {{seconds}}\u00a0s, {{limit}}\u00a0km/h allowed.",
+    tested:
+      "Drive test: speed error {{error}}\u00a0km/h after {{seconds}}\u00a0s, {{limit}}\u00a0km/h allowed.",
     untested: "Its drive test left no speed error.",
     details: "Mounting {{number}}: details",
     quaternion: "Quaternion q_vs: w, x, y, z",

@@ -74,9 +74,9 @@ export const history: Translated<typeof en.history> = {
     angles: "Rollio {{roll}}, beccheggio {{pitch}}, imbardata {{yaw}}",
     sigma: "± {{roll}}, {{pitch}} e {{yaw}}",
     passed:
-      "Prova su strada superata: errore di velocità di {{error}} km/h dopo {{seconds}} s, ammessi {{limit}} km/h.",
+      "Prova su strada superata: errore di velocità di {{error}}\u00a0km/h dopo {{seconds}}\u00a0s, ammessi {{limit}}\u00a0km/h.",
     tested:
-      "Prova su strada: errore di velocità di {{error}} km/h dopo {{seconds}} s, ammessi {{limit}} km/h.",
+      "Prova su strada: errore di velocità di {{error}}\u00a0km/h dopo {{seconds}}\u00a0s, ammessi {{limit}}\u00a0km/h.",
     untested: "La prova su strada non ha lasciato un errore di velocità.",
     details: "Montaggio {{number}}: dettagli",
     quaternion: "Quaternione q_vs: w, x, y, z",
