@@ -27,7 +27,7 @@ SIGHTS = {
     "webhooks": "Help desk",
     "thresholds": "I valori con cui il servizio decide",
     "keys": "mai usata",
-    "audit": "senza chiave",
+    "audit": "address: 127.0.0.1",
     "about": "Versione",
 }
 
