@@ -43,6 +43,21 @@ describe("marksOf", () => {
     expect(told([{ ...elsewhere, data: {} } as Alert])).toContain("2000 Alert: Device turned");
   });
 
+  it("tells sessions that overlap once each", () => {
+    const overlapping = estimates([
+      { t: 0, session: "a", stage: "confirmed" },
+      { t: 1, session: "b", stage: "aligning" },
+      { t: 2, session: "a", stage: "confirmed" },
+      { t: 3, session: "b", stage: "aligning" },
+    ]);
+    const marks = marksOf({ estimates: overlapping, mounts: [], alerts: [] });
+    expect(marks.map(({ text }) => text)).toEqual([
+      "Session a begins",
+      "Session b begins",
+      "Stage: Aligning",
+    ]);
+  });
+
   it("takes nothing", () =>
     expect(marksOf({ estimates: estimates([]), mounts: [], alerts: [] })).toEqual([]));
 });

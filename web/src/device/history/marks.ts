@@ -1,5 +1,5 @@
 /** What happened, as marks on the angle history. */
-import type { Alert, Estimates, Mount } from "../../api/types";
+import type { Alert, Estimates, Mount, Stage } from "../../api/types";
 import { stageWord } from "../../lib/stages";
 import { t } from "../../text";
 import type { Span } from "./span";
@@ -35,26 +35,32 @@ export function marksOf({ estimates, mounts, alerts }: Happened): Mark[] {
   return marks.sort((a, b) => a.time - b.time);
 }
 
-/** Starts of sessions and changes of stage. A change to confirmed is told by its mounting. */
+/**
+ * Starts of sessions and changes of stage. Sessions that were sent at once overlap, so each is followed by itself. A change
+ * to confirmed is told by its mounting.
+ */
 function rowMarks({ time, session, stage }: Estimates): Mark[] {
-  return time.flatMap((moment, row) => {
-    const at = { time: seconds(moment) };
-    const marks: Mark[] = [];
-    const [name, now] = [session[row], stage[row]];
-    if (name !== undefined && name !== session[row - 1]) {
-      marks.push({
-        ...at,
-        kind: "session",
-        flag: t("history.flag.session"),
-        text: t("history.event.session", { name }),
-      });
-    }
-    if (row > 0 && now !== undefined && now !== stage[row - 1] && now !== "confirmed") {
-      const word = stageWord(now);
-      marks.push({ ...at, kind: "stage", flag: word, text: t("history.event.stage", { stage: word }) });
-    }
-    return marks;
+  const stages = new Map<string, Stage>();
+  const marks: Mark[] = [];
+  session.forEach((name, row) => {
+    const [moment, now] = [time[row], stage[row]];
+    if (moment === undefined || now === undefined) return;
+    if (!stages.has(name)) marks.push(sessionMark(moment, name));
+    const before = stages.get(name) ?? stage[row - 1] ?? now;
+    if (now !== before && now !== "confirmed") marks.push(stageMark(moment, now));
+    stages.set(name, now);
   });
+  return marks;
+}
+
+function sessionMark(moment: string, name: string): Mark {
+  const text = t("history.event.session", { name });
+  return { kind: "session", time: seconds(moment), flag: t("history.flag.session"), text };
+}
+
+function stageMark(moment: string, stage: Stage): Mark {
+  const flag = stageWord(stage);
+  return { kind: "stage", time: seconds(moment), flag, text: t("history.event.stage", { stage: flag }) };
 }
 
 function mountMark({ id, confirmed_at }: Mount): Mark {
