@@ -169,6 +169,7 @@ def test_the_drive_test_counts_down_and_draws_both_speeds(installer: Visitor, ap
         pass
     expect(test).to_contain_text("Passed")
     expect(test.get_by_label("within the limit")).to_be_visible()
+    test.scroll_into_view_if_needed()
     expect(chart).to_be_visible()
     expect(countdown).to_have_count(0)
 
