@@ -300,6 +300,7 @@ def test_everybody_can_use_it_in_italian_too(visitor: Visitor, page: Page) -> No
     visitor.assert_accessible()
     page.evaluate("localStorage.setItem('livella-language', 'it')")
     page.reload()
+    visitor.scroll_to("Storico degli angoli")
     region = page.get_by_role("region", name="Storico degli angoli")
     expect(region.get_by_role("img", name="Imbardata nel tempo; ultimo valore: ")).to_be_visible()
     expect(region.get_by_role("figure").first).to_contain_text(re.compile(r"Rollio −?\d+,\d° ± \d,\d°"))
@@ -365,7 +366,10 @@ def test_the_lower_half_comes_when_it_is_looked_at(visitor: Visitor, api: Api) -
     visitor.page.on("request", lambda request: asked.append(request.url))
     visitor.sign_in()
     visitor.open("/devices/van-1")
-    expect(visitor.page.get_by_role("img", name=CHART)).to_be_attached(timeout=20_000)
-    assert not [url for url in asked if "/health" in url or "HealthSection" in url]
-    visitor.page.get_by_role("region", name="Data health").scroll_into_view_if_needed()
+    visitor.see_stage("Confirmed")
+    visitor.page.wait_for_load_state("networkidle")
+    assert not [url for url in asked if re.search("/health|HealthSection|HistorySection", url)]
+    visitor.scroll_to("Angle history")
+    expect(visitor.page.get_by_role("img", name=CHART)).to_be_visible(timeout=20_000)
+    visitor.scroll_to("Data health")
     visitor.see("Every chunk has arrived")
