@@ -145,6 +145,7 @@ def test_a_moved_device_is_told_with_the_evidence(visitor: Visitor, api: Api) ->
     (alert,) = api.get("/alerts")["items"]
     visitor.sign_in()
     visitor.open("/devices/van-1")
+    visitor.scroll_to("Alerts")
     shown = visitor.page.get_by_role("region", name="Alerts")
     expect(shown).to_contain_text(alert["message"])
     chart = shown.get_by_role("img", name="Evidence went from")
