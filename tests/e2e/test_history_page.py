@@ -316,6 +316,20 @@ def test_everybody_can_use_it_in_italian_too(visitor: Visitor, page: Page) -> No
     visitor.assert_accessible()
 
 
+def test_what_does_not_come_says_so(visitor: Visitor, moved: Device) -> None:
+    visitor.tolerated += ("ERR_FAILED",)
+    visitor.page.route("**/assets/HistorySection*.js", lambda route: route.abort())
+    visitor.sign_in()
+    visitor.open("/devices/van-1")
+    visitor.scroll_to("Angle history")
+    trouble = visitor.page.get_by_role("alert").filter(has_text="the history")
+    expect(trouble).to_contain_text("Check the connection", timeout=20_000)
+    visitor.page.unroute("**/assets/HistorySection*.js")
+    trouble.get_by_role("button", name="Try again").click()
+    visitor.scroll_to("Angle history")
+    expect(visitor.page.get_by_role("img", name=CHART)).to_be_visible(timeout=20_000)
+
+
 def test_health_tells_what_was_not_used_and_what_was_lost(installer: Visitor, api: Api) -> None:
     device = api.add_device("van-1", name="Van 1")
     page = installer.page

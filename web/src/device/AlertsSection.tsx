@@ -1,6 +1,6 @@
 import { TriangleAlert } from "lucide-react";
 import { useMay } from "../api/session";
-import { optional } from "../components/optional";
+import { needed } from "../components/needed";
 import { Section } from "../components/Section";
 import { Loading } from "../components/States";
 import { Notice } from "../components/Tone";
@@ -9,7 +9,10 @@ import { whole } from "../lib/format";
 import { t } from "../text";
 import css from "./alerts.module.css";
 
-const DeviceAlerts = optional(() => import("./DeviceAlerts"));
+const DeviceAlerts = needed(
+  () => t("history.alert.the_alerts"),
+  () => import("./DeviceAlerts"),
+);
 
 /** What the service found wrong with this device. Managers read the findings, others only how many there are. */
 export function AlertsSection({ id, open }: { id: string; open: number }) {

@@ -1,6 +1,6 @@
-import { type ComponentType, lazy } from "react";
+import { needed } from "../components/needed";
 import { Section } from "../components/Section";
-import { Failed, Loading } from "../components/States";
+import { Loading } from "../components/States";
 import { WhenSeen } from "../components/WhenSeen";
 import { t } from "../text";
 
@@ -9,8 +9,14 @@ interface PastProps {
   lastData: string | null;
 }
 
-const HistorySection = later<PastProps>("history.title", () => import("./history/HistorySection"));
-const HealthSection = later<{ id: string }>("history.health.title", () => import("./health/HealthSection"));
+const HistorySection = needed(
+  () => t("history.the_history"),
+  () => import("./history/HistorySection"),
+);
+const HealthSection = needed(
+  () => t("history.health.the_health"),
+  () => import("./health/HealthSection"),
+);
 
 /** What the device has been through, and what became of its data. */
 export function Past({ id, lastData }: PastProps) {
@@ -32,21 +38,5 @@ function Coming({ title, lines }: { title: string; lines: number }) {
     <Section title={title} className="no-print">
       <Loading what={title} lines={lines} />
     </Section>
-  );
-}
-
-/** A section whose program is fetched when it is wanted; where that fails, it says so. */
-function later<P>(
-  title: "history.title" | "history.health.title",
-  load: () => Promise<{ default: ComponentType<P> }>,
-) {
-  return lazy(() =>
-    load().catch((error: Error) => ({
-      default: () => (
-        <Section title={t(title)} className="no-print">
-          <Failed what={t(title)} error={error} retry={() => location.reload()} />
-        </Section>
-      ),
-    })),
   );
 }
