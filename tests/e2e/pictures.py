@@ -30,7 +30,7 @@ DESK = {"width": 1280, "height": 860}
 KINDS = set(get_args(schemas.AlertKind))
 PATIENCE = 180.0
 """s until the demo shows every kind of alert"""
-DRAWN = 1500
+DRAWN = 4000
 """ms: the 3D picture is fetched and drawn after the rest"""
 
 
@@ -139,10 +139,8 @@ def picture_past(visitor: Visitor) -> None:
     """The history and the data of a device that has driven for hours."""
     visitor.open("/devices/van-103")
     visitor.scroll_to("Angle history")
-    visitor.page.get_by_role("img", name="Yaw over time").scroll_into_view_if_needed()
-    visitor.page.wait_for_timeout(DRAWN)
-    region = visitor.page.get_by_role("region", name="Angle history")
-    region.screenshot(path=PICTURES / "history-desk.png")
+    visitor.page.get_by_text("Events in view").scroll_into_view_if_needed()
+    take(visitor.page, "history-desk")
 
 
 def _alerts(visitor: Visitor) -> list[dict[str, Any]]:
