@@ -69,7 +69,17 @@ export default defineConfig({
     assetsInlineLimit: 0,
     rolldownOptions: {
       // What many parts share comes as one file, because a phone's network takes long to begin each; charts come later.
-      output: { codeSplitting: { groups: [{ name: "shared", minShareCount: 4, test: /^(?!.*uplot)/i }] } },
+      output: {
+        codeSplitting: {
+          groups: [
+            {
+              name: "shared",
+              minShareCount: 4,
+              test: /^(?!.*(uplot|Modal|remove-scroll|FocusTrap|ScrollArea))/i,
+            },
+          ],
+        },
+      },
     },
     // three.js, loaded only where the picture is shown.
     chunkSizeWarningLimit: 800,
