@@ -68,7 +68,7 @@ export default defineConfig({
     // Everything is a file of its own: the service's content security policy allows no data: scripts or fonts.
     assetsInlineLimit: 0,
     rolldownOptions: {
-      // What many parts share comes as one file, because a phone's network takes long to begin each; charts come later.
+      // What many parts share comes as one file, because a phone's network takes long to begin each; charts and dialogs come later.
       output: {
         codeSplitting: {
           groups: [

@@ -158,7 +158,7 @@ def looking(chromium: Browser, url: str, key: str, size: dict[str, int], **optio
     """Somebody signed in, in front of a screen of this size."""
     with Visitor.at_work(chromium, url, **size, **options) as visitor:
         visitor.open()
-        visitor.page.locator("input").fill(key)
+        visitor.page.locator("input[type=password]").fill(key)
         visitor.page.locator("button[type=submit]").click()
         visitor.page.locator("main h1").wait_for()
         yield visitor
