@@ -128,10 +128,9 @@ def picture_fleet(chromium: Browser, client: httpx.Client) -> None:
 
 def picture_alert(visitor: Visitor) -> None:
     """An alert with what it was raised on."""
-    (moved,) = [alert for alert in _alerts(visitor) if alert["kind"] == "orientation_changed"][:1]
+    moved = next(alert for alert in _alerts(visitor) if alert["device_id"] == "car-205")
     visitor.open(f"/alerts?id={moved['id']}")
     visitor.see("What to do")
-    visitor.page.get_by_text("Evidence", exact=True).click()
     take(visitor.page, "alert-desk")
 
 
@@ -140,6 +139,8 @@ def picture_past(visitor: Visitor) -> None:
     visitor.open("/devices/van-103")
     visitor.scroll_to("Angle history")
     visitor.page.get_by_text("Events in view").scroll_into_view_if_needed()
+    region = visitor.page.get_by_role("region", name="Angle history")
+    region.evaluate("region => scrollTo(0, region.getBoundingClientRect().top + scrollY - 120)")
     take(visitor.page, "history-desk")
 
 

@@ -59,17 +59,17 @@ function Content({ name, device, installation }: ContentProps) {
         <LiveCard installation={installation} />
         {now && verification}
         <div className={css.columns}>
-          <MountingSection shown={shown} />
+          <div className={css.side}>
+            <MountingSection shown={shown} />
+            {shown && <NumbersSection shown={shown} />}
+          </div>
           <div className={css.side}>
             {!now && verification}
             <UncertaintySection installation={installation} />
             <MountsSection id={id} />
           </div>
         </div>
-        <div className={css.halves}>
-          <AlertsSection id={id} open={installation.open_alerts} />
-          {shown && <NumbersSection shown={shown} />}
-        </div>
+        <AlertsSection id={id} open={installation.open_alerts} />
         <Past id={id} lastData={installation.last_data_at} />
       </div>
       <Suspense fallback={null}>
