@@ -3,7 +3,13 @@ import "virtual:theme.css";
 import "./app/base.css";
 import { createRoot } from "react-dom/client";
 import { App } from "./app/App";
+import { comesTo } from "./app/pages";
 import { startText } from "./text";
 
 const root = document.getElementById("root");
-if (root) startText().then(() => createRoot(root).render(<App />));
+if (root) {
+  startText().then(() => {
+    comesTo(location.pathname);
+    createRoot(root).render(<App />);
+  });
+}

@@ -1,48 +1,21 @@
 import { MantineProvider } from "@mantine/core";
 import { QueryCache, QueryClient, QueryClientProvider } from "@tanstack/react-query";
-import { type ComponentType, lazy, Suspense } from "react";
+import { type ComponentType, Suspense } from "react";
 import { Redirect, Route, Switch } from "wouter";
 import { Problem } from "../api/http";
 import { keys } from "../api/keys";
 import { atLeast, useSession } from "../api/session";
 import type { Role, SignedIn } from "../api/types";
 import { Failed, Loading } from "../components/States";
-import { openRooms, type Room, t, useLanguage } from "../text";
+import { t, useLanguage } from "../text";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { LiveProvider } from "./Live";
 import { NotFound } from "./NotFound";
+import { AlertsPage, DevicePage, DevicesPage, SettingsPage } from "./pages";
 import { Shell } from "./Shell";
 import { SignIn } from "./SignIn";
 import { useScroll } from "./scroll";
 import { theme } from "./theme";
-
-/** Each page comes, with its texts, when it is first opened, so that the first one is there soon. */
-const DevicesPage = page(() => import("../devices/DevicesPage").then((m) => m.DevicesPage), "devices");
-const DevicePage = page(
-  () => import("../device/DevicePage").then((m) => m.DevicePage),
-  "device",
-  "history",
-  "mounting",
-  "alerts",
-);
-const AlertsPage = page(
-  () => import("../alerts/AlertsPage").then((m) => m.AlertsPage),
-  "alerts",
-  "history",
-  "mounting",
-);
-const SettingsPage = page(
-  () => import("../settings/SettingsPage").then((m) => m.SettingsPage),
-  "settings",
-  "alerts",
-);
-
-function page<P>(load: () => Promise<ComponentType<P>>, ...rooms: Room[]) {
-  return lazy(async () => {
-    const [component] = await Promise.all([load(), openRooms(...rooms)]);
-    return { default: component };
-  });
-}
 
 /** A refusal (4xx) is an answer; only silence and the service's own trouble are worth another try. */
 function worthRetrying(count: number, error: Error): boolean {

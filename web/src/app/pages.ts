@@ -1,0 +1,40 @@
+/** Each page comes, with its texts, when it is first opened, so that the first one is there soon. */
+import { type ComponentType, lazy } from "react";
+import { openRooms, type Room } from "../text";
+
+const parts = {
+  devices: () => import("../devices/DevicesPage").then((m) => m.DevicesPage),
+  device: () => import("../device/DevicePage").then((m) => m.DevicePage),
+  alerts: () => import("../alerts/AlertsPage").then((m) => m.AlertsPage),
+  settings: () => import("../settings/SettingsPage").then((m) => m.SettingsPage),
+};
+type Part = keyof typeof parts;
+
+const rooms: Record<Part, Room[]> = {
+  devices: ["devices"],
+  device: ["device", "history", "mounting", "alerts"],
+  alerts: ["alerts", "history", "mounting"],
+  settings: ["settings", "alerts"],
+};
+
+function page<P>(part: Part, load: () => Promise<ComponentType<P>>) {
+  return lazy(async () => {
+    const [component] = await Promise.all([load(), openRooms(...rooms[part])]);
+    return { default: component };
+  });
+}
+
+export const DevicesPage = page("devices", parts.devices);
+export const DevicePage = page("device", parts.device);
+export const AlertsPage = page("alerts", parts.alerts);
+export const SettingsPage = page("settings", parts.settings);
+
+/** Somebody comes to this address: what it shows begins to come while it is still found out who they are. */
+export function comesTo(path: string): void {
+  const [, place, more] = path.split("/");
+  const part = place === "devices" && more ? "device" : place;
+  if (part === undefined || !Object.hasOwn(parts, part)) return;
+  const wanted = part as Part;
+  // a failure is told where the page is shown
+  Promise.all([parts[wanted](), openRooms(...rooms[wanted])]).catch(() => undefined);
+}
