@@ -1,5 +1,11 @@
 /** The fleet: its devices as a list that is read page by page, and a new one. */
-import { keepPreviousData, useInfiniteQuery, useMutation, useQueryClient } from "@tanstack/react-query";
+import {
+  infiniteQueryOptions,
+  keepPreviousData,
+  useInfiniteQuery,
+  useMutation,
+  useQueryClient,
+} from "@tanstack/react-query";
 import { answer, http } from "./http";
 import { type DeviceFilter, keys } from "./keys";
 import type { Device, DeviceDraft, Page } from "./types";
@@ -9,13 +15,16 @@ const FIRST_PAGE = 200;
 const PAGE = 500;
 
 export function useDevices(filter: DeviceFilter) {
-  return useInfiniteQuery({
+  return useInfiniteQuery({ ...deviceList(filter), placeholderData: keepPreviousData });
+}
+
+export function deviceList(filter: DeviceFilter) {
+  return infiniteQueryOptions({
     queryKey: keys.deviceList(filter),
     queryFn: ({ pageParam, signal }) =>
       answer(http.GET("/api/v1/devices", { params: { query: listQuery(filter, pageParam) }, signal })),
     initialPageParam: null as string | null,
     getNextPageParam: (page) => page.next_cursor,
-    placeholderData: keepPreviousData,
   });
 }
 

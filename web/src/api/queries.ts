@@ -1,5 +1,5 @@
 /** What the page reads and does, as TanStack queries. Live updates come in through `live.ts`. */
-import { replaceEqualDeep, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { queryOptions, replaceEqualDeep, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { answer, http } from "./http";
 import { keys } from "./keys";
 import { newer } from "./merge";
@@ -7,8 +7,13 @@ import type { Installation } from "./types";
 
 const PAGE = 100;
 
+export const summary = queryOptions({
+  queryKey: keys.summary,
+  queryFn: () => answer(http.GET("/api/v1/fleet/summary")),
+});
+
 export function useSummary() {
-  return useQuery({ queryKey: keys.summary, queryFn: () => answer(http.GET("/api/v1/fleet/summary")) });
+  return useQuery(summary);
 }
 
 const of = (device_id: string) => ({ params: { path: { device_id } } });
@@ -22,7 +27,11 @@ export function useDevice(id: string, enabled: boolean) {
 }
 
 export function useInstallation(id: string) {
-  return useQuery({
+  return useQuery(installation(id));
+}
+
+export function installation(id: string) {
+  return queryOptions({
     queryKey: keys.installation(id),
     queryFn: () => answer(http.GET("/api/v1/devices/{device_id}/installation", of(id))),
     structuralSharing: (known, told) =>

@@ -1,5 +1,5 @@
 /** Who is signed in, and what they may do. */
-import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { queryOptions, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { answer, http, Problem } from "./http";
 import { keys } from "./keys";
 import type { Role, SignedIn } from "./types";
@@ -8,8 +8,14 @@ const RANK: Record<Role, number> = { device: 0, installer: 1, manager: 2, admin:
 
 /** The session, or null when nobody is signed in. */
 export function useSession() {
-  return useQuery({ queryKey: keys.session, queryFn: readSession, staleTime: Number.POSITIVE_INFINITY });
+  return useQuery(session);
 }
+
+export const session = queryOptions({
+  queryKey: keys.session,
+  queryFn: readSession,
+  staleTime: Number.POSITIVE_INFINITY,
+});
 
 async function readSession(): Promise<SignedIn | null> {
   try {

@@ -1,9 +1,8 @@
 import { MantineProvider } from "@mantine/core";
-import { QueryCache, QueryClient, QueryClientProvider } from "@tanstack/react-query";
+import { QueryClientProvider } from "@tanstack/react-query";
 import { type ComponentType, Suspense } from "react";
 import { Redirect, Route, Switch } from "wouter";
-import { Problem } from "../api/http";
-import { keys } from "../api/keys";
+import { client } from "../api/client";
 import { atLeast, useSession } from "../api/session";
 import type { Role, SignedIn } from "../api/types";
 import { Failed, Loading } from "../components/States";
@@ -16,21 +15,6 @@ import { Shell } from "./Shell";
 import { SignIn } from "./SignIn";
 import { useScroll } from "./scroll";
 import { theme } from "./theme";
-
-/** A refusal (4xx) is an answer; only silence and the service's own trouble are worth another try. */
-function worthRetrying(count: number, error: Error): boolean {
-  return count < 3 && !(error instanceof Problem && error.status >= 400 && error.status < 500);
-}
-
-const client: QueryClient = new QueryClient({
-  defaultOptions: { queries: { retry: worthRetrying, staleTime: 30_000, refetchOnWindowFocus: false } },
-  queryCache: new QueryCache({ onError: signedOut }),
-});
-
-/** The session ended while the page was open: back to the sign-in. */
-function signedOut(error: Error): void {
-  if (error instanceof Problem && error.status === 401) client.setQueryData(keys.session, null);
-}
 
 /** Another language is another page: everything is drawn anew. */
 export function App() {
