@@ -230,5 +230,5 @@ def test_the_description_names_every_error_and_every_answer(client: TestClient) 
     assert "HTTPValidationError" not in document["components"]["schemas"]
     assert set(document["components"]["schemas"]["Installation"]["required"]) == {
         *("device_id", "stage", "since", "progress", "needs", "hint", "estimate", "verification", "mount", "limits"),
-        *("open_alerts", "last_data_at", "revision"),
+        *("data", "open_alerts", "last_data_at", "revision"),
     }
