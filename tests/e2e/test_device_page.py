@@ -130,9 +130,10 @@ def test_the_uncertainty_shrinks_before_ones_eyes(installer: Visitor, api: Api) 
     page = open_device(installer)
     sure = page.get_by_role("region", name="How sure")
     expect(sure).to_contain_text("three curves appear here")
-    sure.scroll_into_view_if_needed()
     for seq, body in enumerate(drives.chunks()[:2]):
         device.send(body, seq, expect=200)
+    expect(page.get_by_role("region", name="Numbers")).to_be_visible()
+    sure.scroll_into_view_if_needed()
     chart = sure.get_by_role("img", name="Uncertainty over time")
     expect(chart).to_be_visible()
     sigma = device.installation()["estimate"]["sigma_deg"]
