@@ -20,10 +20,10 @@ How quickly the page comes and moves in Chromium, made by `make bench-page`, wit
 First visits: nothing is kept from an earlier one, a phone's screen, the processor made {slow} times slower, the service
 on the same machine. "Usable" is the time from the beginning of the visit until what the view is for has been painted:
 the field for the key, the first rows of the list, the stage of a device. JavaScript is what comes over the network,
-compressed with Brotli, until {quiet:.0f} s after that; over plain http from another machine browsers take gzip only, which
-is about an eighth more. The 3D picture of a device is not counted, it comes last and only where it is shown. Frames a
-second are counted on a desk's screen without slowing the processor down, while the page is moved with every frame for
-3 s; Chromium draws without a graphics card here, and 60 is the most it draws.
+compressed with Brotli, until {quiet:.0f} s after that; over plain http from another machine browsers take gzip only,
+which is about an eighth more. The 3D picture of a device is not counted, it comes last and only where it is shown.
+Frames a second are counted on a desk's screen without slowing the processor down, while the page is moved with every
+frame for 3 s; Chromium draws without a graphics card here, and 60 is the most it draws.
 
 Times are medians of {times} with the slowest behind the slash, frames medians with the fewest behind it.
 
