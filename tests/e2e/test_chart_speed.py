@@ -21,8 +21,8 @@ def test_ten_thousand_points_are_moved_along(
         page = visitor.page
         open_long_history(page)
         shown = page.get_by_role("region", name="Angle history").get_by_role("status").first
-        before = shown.text_content() or ""
         rate = pan_frame_rate(page)
+        before = shown.text_content() or ""  # where it ends depends on how regular the frames were
         print(f"{POINTS:,} points: {rate:.0f} frames a second over {SECONDS:.0f} s of panning")
         record_property("pan_frames_per_second", round(rate, 1))
         page.get_by_role("button", name="Earlier").click()
