@@ -17,7 +17,6 @@ from sqlalchemy.engine import Connection, CursorResult, Engine, make_url
 from storage import prepared
 from storage.file_lock import FileLock
 from storage.group_commit import GroupCommit
-from storage.pipelines import Pipeline
 from storage.prepared import Prepared
 
 T = TypeVar("T")
@@ -34,29 +33,24 @@ class ReadSession:
     """One consistent look at the database."""
 
     def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-
-    @property
-    def connection(self) -> Connection:
-        """SQLAlchemy's connection."""
-        return self._connection
+        self.connection = connection
 
     @property
     def is_postgresql(self) -> bool:
         """True on PostgreSQL, False on SQLite."""
-        return self._connection.dialect.name == "postgresql"
+        return self.connection.dialect.name == "postgresql"
 
     def one(self, make: Callable[..., T], statement: sa.Executable | Prepared, **values: Any) -> T | None:
         """Give the first row as `make(*row)`, or None; `values` are those of the statement's parameters."""
         if isinstance(statement, Prepared):
-            return next((make(*row) for row in statement.rows(self._connection, values)), None)
+            return next((make(*row) for row in statement.rows(self.connection, values)), None)
         row = self.connection.execute(statement, values).first()
         return None if row is None else make(*row)
 
     def all(self, make: Callable[..., T], statement: sa.Executable | Prepared, **values: Any) -> list[T]:
         """Give every row as `make(*row)`."""
         if isinstance(statement, Prepared):
-            return [make(*row) for row in statement.rows(self._connection, values)]
+            return [make(*row) for row in statement.rows(self.connection, values)]
         return [make(*row) for row in self.connection.execute(statement, values)]
 
     def value(self, statement: sa.Executable, **values: Any) -> Any:
@@ -65,21 +59,7 @@ class ReadSession:
 
 
 class WriteSession(ReadSession):
-    """A transaction that may write; everything in it becomes durable together, or nothing does.
-
-    With a pipeline the error of a prepared write may be raised by a later statement, or by the commit.
-    """
-
-    def __init__(self, connection: Connection, pipeline: Pipeline | None = None) -> None:
-        self._pipeline = pipeline
-        super().__init__(connection)
-
-    @property
-    def connection(self) -> Connection:
-        """SQLAlchemy's connection, when all that was sent has taken effect."""
-        if self._pipeline is not None:
-            self._pipeline.end()
-        return self._connection
+    """A transaction that may write; everything in it becomes durable together, or nothing does."""
 
     def execute(self, statement: sa.Executable, **values: Any) -> CursorResult[Any]:
         """Run an INSERT, UPDATE or DELETE."""
@@ -87,9 +67,7 @@ class WriteSession(ReadSession):
 
     def run(self, statement: Prepared, **values: Any) -> None:
         """Run a prepared INSERT or UPDATE."""
-        if self._pipeline is not None:
-            self._pipeline.begin()
-        statement.rows(self._connection, values)
+        statement.rows(self.connection, values)
 
 
 class Database:
@@ -125,11 +103,7 @@ class Database:
     @contextmanager
     def write(self) -> Iterator[WriteSession]:
         """Open a transaction, committed durably when the block ends and rolled back when it raises."""
-        if self._group is None:
-            with _pipelined(self._writes) as tx:
-                yield tx
-            return
-        with _write_session(self._group.transaction(BUSY_TIMEOUT)) as tx:
+        with _write_session(self._transaction()) as tx:
             yield tx
 
     @contextmanager
@@ -144,6 +118,9 @@ class Database:
         with self._group.together(BUSY_TIMEOUT) as group:
             yield lambda: _write_session(group.member())
 
+    def _transaction(self) -> AbstractContextManager[Connection]:
+        return self._writes.begin() if self._group is None else self._group.transaction(BUSY_TIMEOUT)
+
     def close(self) -> None:
         """Close every connection."""
         self._reads.dispose()
@@ -156,17 +133,6 @@ class Database:
 def _write_session(transaction: AbstractContextManager[Connection]) -> Iterator[WriteSession]:
     with transaction as connection:
         yield WriteSession(connection)
-
-
-@contextmanager
-def _pipelined(engine: Engine) -> Iterator[WriteSession]:
-    with engine.connect() as connection:
-        pipeline = Pipeline(connection)
-        try:
-            with connection.begin():
-                yield WriteSession(connection, pipeline)
-        finally:
-            pipeline.abandon()
 
 
 def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:

@@ -4,8 +4,7 @@ SQLAlchemy looks up, checks and wraps for every execution, several times as long
 its key. A prepared statement keeps the text and the types' converters that SQLAlchemy made for it; errors are its own.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import sqlalchemy as sa
@@ -29,7 +28,6 @@ class _Translated(NamedTuple):
     """name, value where none is given, converter; in the order of their places"""
     results: tuple[tuple[int, Callable[[Any], Any]], ...]
     """place and converter of the columns that have one"""
-    gives_rows: bool
 
     def bind(self, values: dict[str, Any]) -> _Parameters:
         """Give the parameters as the driver takes them."""
@@ -61,26 +59,18 @@ class Prepared:
         form = self._translated.get(key := (connection.dialect.name, *values))
         if form is None:
             form = self._translated[key] = _translate(self.statement, connection.dialect, tuple(values))
-        found = execute(connection, form.sql, form.bind(values), form.gives_rows)
-        return [form.shape(row) for row in found]
+        return [form.shape(row) for row in execute(connection, form.sql, form.bind(values))]
 
 
-def execute(connection: Connection, sql: str, parameters: _Parameters = (), gives_rows: bool = False) -> list[Any]:
+def execute(connection: Connection, sql: str, parameters: _Parameters = ()) -> list[Any]:
     """Give the driver a statement of the connection's transaction, and the rows that it gives."""
     driver: Any = connection.connection.dbapi_connection
-    with wrapping(connection, sql):
-        cursor = driver.execute(sql, parameters)
-        found: list[Any] = cursor.fetchall() if gives_rows else []
-        return found
-
-
-@contextmanager
-def wrapping(connection: Connection, sql: str) -> Iterator[None]:
-    """Let an error of the driver be SQLAlchemy's."""
     try:
-        yield
+        cursor = driver.execute(sql, parameters)
+        found: list[Any] = [] if cursor.description is None else cursor.fetchall()
     except connection.dialect.loaded_dbapi.Error as error:
         raise _wrapped(connection, sql, error) from error
+    return found
 
 
 def _wrapped(connection: Connection, sql: str, error: Any) -> BaseException:
@@ -115,4 +105,4 @@ def _translate(statement: Any, dialect: Dialect, names: Sequence[str]) -> _Trans
     columns = statement.selected_columns if statement.is_select else ()
     results = [column.type.dialect_impl(dialect).result_processor(dialect, _FLOAT8) for column in columns]
     converted = tuple((place, convert) for place, convert in enumerate(results) if convert is not None)
-    return _Translated(str(compiled), by_place, tuple(places), converted, statement.is_select)
+    return _Translated(str(compiled), by_place, tuple(places), converted)

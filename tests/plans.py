@@ -26,11 +26,9 @@ def statements(of: sa.Connection | type[sa.Engine]) -> Iterator[list[Statement]]
         if statement.startswith(EXPLAINED):
             ran.append((statement, values[0] if isinstance(values, list) else values))
 
-    def execute(
-        connection: sa.Connection, sql: str, parameters: Sequence[Any] | dict[str, Any] = (), gives_rows: bool = False
-    ) -> list[Any]:
+    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] | dict[str, Any] = ()) -> list[Any]:
         note(connection, None, sql, parameters if isinstance(parameters, dict) else tuple(parameters))
-        return straight(connection, sql, parameters, gives_rows)
+        return straight(connection, sql, parameters)
 
     straight, prepared.execute = prepared.execute, execute
     event.listen(of, "before_cursor_execute", note)

@@ -1,6 +1,6 @@
 """A fault at any statement of an upload undoes all of it, and the same chunk sent again does all of it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -47,9 +47,9 @@ def crash_at(statement: int) -> Iterator[list[str]]:
         if not connection.get_execution_options().get("postgresql_readonly") and not is_reader(connection):
             count("COMMIT")
 
-    def execute(connection: sa.Connection, sql: str, parameters: Any = (), gives_rows: bool = False) -> list[Any]:
+    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] | dict[str, Any] = ()) -> list[Any]:
         before_execute(connection, None, sql)
-        return straight(connection, sql, parameters, gives_rows)
+        return straight(connection, sql, parameters)
 
     straight, prepared.execute = prepared.execute, execute
     event.listen(sa.Engine, "before_cursor_execute", before_execute)

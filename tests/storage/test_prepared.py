@@ -3,7 +3,6 @@
 from datetime import UTC, datetime
 from typing import Any
 
-import psycopg
 import pytest
 import sqlalchemy as sa
 
@@ -64,52 +63,6 @@ def test_errors_are_sqlalchemys_and_undo_the_transaction(database: Database) -> 
     with pytest.raises(sa.exc.IntegrityError):
         add_both()
     assert rows(database, "b") == []
-
-
-def test_what_was_written_is_read_by_whatever_follows(database: Database) -> None:
-    with database.write() as tx:
-        tx.run(ADD, id="a", name="A", created_at=NOW)
-        tx.run(RENAME, of_id="a", name="B")
-        assert tx.one(str, Prepared(sa.select(table.c.name))) == "B"
-        tx.run(RENAME, of_id="a", name="C")
-        assert tx.value(sa.select(table.c.name)) == "C"
-        tx.run(RENAME, of_id="a", name="D")
-        tx.execute(sa.update(table).values(notes="plain"))
-    assert rows(database, "a") == [("a", None, NOW, "plain")]
-
-
-def test_an_error_that_comes_late_undoes_everything_and_spares_the_connection(database: Database) -> None:
-    def add_twice_and_more() -> None:
-        with database.write() as tx:
-            tx.run(ADD, id="a", name="A", created_at=NOW)
-            tx.run(ADD, id="a", name="again", created_at=NOW)
-            tx.run(ADD, id="b", name="B", created_at=NOW)
-            tx.value(sa.select(sa.func.count()).select_from(table))
-
-    for _ in range(3):
-        with pytest.raises(sa.exc.IntegrityError):
-            add_twice_and_more()
-    with database.write() as tx:
-        tx.run(ADD, id="c", name="C", created_at=NOW)
-    assert [rows(database, name) != [] for name in "abc"] == [False, False, True]
-
-
-@pytest.mark.parametrize("backend", ["postgresql"], indirect=True)
-def test_writes_go_to_postgresql_without_a_wait_for_each(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
-    waits = 0
-    wait = psycopg.Connection.wait
-
-    def count(self: Any, *args: Any, **options: Any) -> Any:
-        nonlocal waits
-        waits += self.pgconn.pipeline_status == psycopg.pq.PipelineStatus.OFF
-        return wait(self, *args, **options)
-
-    monkeypatch.setattr(psycopg.Connection, "wait", count)
-    with database.write() as tx:
-        for name in "abcdefgh":
-            tx.run(ADD, id=name, name=name, created_at=NOW)
-    assert waits <= 3
-    assert rows(database, "h") != []
 
 
 @pytest.mark.parametrize("backend", ["postgresql"], indirect=True)
