@@ -47,6 +47,14 @@ class Samples:
     """(M,) True for a valid fix, False where the receiver reports that it has none."""
     fix: Floats
     """(M, 8) the fixes, columns as in `FIX_COLUMNS`; NaN for what is not given."""
+    m_s: Floats | None = None
+    """(N, 3) uT, magnetic field in the sensor frame; NaN rows where there is no reading; None: no magnetometer."""
+    steer: Floats | None = None
+    """(N,) rad at the steering wheel, positive to the left; NaN where not given; None: no such column."""
+    temperature: Floats | None = None
+    """(N,) degC of the sensor; as `steer`."""
+    pressure: Floats | None = None
+    """(N,) Pa of the air; as `steer`."""
 
     @classmethod
     def make(
@@ -57,6 +65,10 @@ class Samples:
         fix_row: ArrayLike = (),
         fix_valid: ArrayLike = (),
         fix: ArrayLike | None = None,
+        m_s: ArrayLike | None = None,
+        steer: ArrayLike | None = None,
+        temperature: ArrayLike | None = None,
+        pressure: ArrayLike | None = None,
     ) -> Self:
         """Convert, check and freeze the arrays of one chunk.
 
@@ -73,10 +85,11 @@ class Samples:
         row = np.ascontiguousarray(fix_row, np.int64)
         valid = np.ascontiguousarray(fix_valid, np.bool_)
         fix_ = np.empty((0, 8)) if fix is None else np.ascontiguousarray(fix, np.float64).reshape(-1, 8)
+        m_s_ = None if m_s is None else np.ascontiguousarray(m_s, np.float64).reshape(-1, 3)
+        others = [None if x is None else np.ascontiguousarray(x, np.float64) for x in (steer, temperature, pressure)]
         if (
             t_.ndim != 1
-            or f_s_.shape[0] != n
-            or w_s_.shape[0] != n
+            or any(x is not None and x.shape[0] != n for x in (f_s_, w_s_, m_s_, *others))
             or not row.shape[0] == valid.shape[0] == fix_.shape[0]
         ):
             raise SampleError("the columns have different lengths")
@@ -85,7 +98,7 @@ class Samples:
         _check_order(t_)
         if row.size and (row[0] < 0 or row[-1] >= n or np.any(np.diff(row) <= 0)):
             raise SampleError("fix rows must be strictly increasing indices of samples")
-        return cls(t_, f_s_, w_s_, row, valid, fix_)
+        return cls(t_, f_s_, w_s_, row, valid, fix_, m_s_, *others)
 
     def __len__(self) -> int:
         """Give the number of IMU samples."""
@@ -101,6 +114,7 @@ class Samples:
             self.fix_row[inside] - start,
             self.fix_valid[inside],
             self.fix[inside],
+            *(None if x is None else x[start:stop] for x in (self.m_s, self.steer, self.temperature, self.pressure)),
         )
 
 

@@ -1,6 +1,7 @@
 """The native columns, whether they come as CSV or as Arrow: their names, their rules, their way to SI and radians."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from typing import Final
 
@@ -22,9 +23,10 @@ GPS = ("lat", "lon", "alt", "speed", "course", "vz", "speed_acc", "course_acc")
 """in the order of `core.FIX_COLUMNS`"""
 _PACKED = (*ACCELERATION, *RATE, "fix", *GPS)
 """after the time in the order of `_native_kernel`"""
-READ = (*TIME, *ACCELERATION, *RATE, "fix", *GPS)
-NOT_READ = ("mx", "my", "mz", "temp", "steer")
-"""known columns that the estimator does not use"""
+FIELD = ("mx", "my", "mz")
+OTHERS = ("steer", "temp", "pressure")
+"""in the order of `core.Samples`"""
+READ = (*TIME, *ACCELERATION, *RATE, "fix", *GPS, *FIELD, *OTHERS)
 
 MAX_COLUMNS: Final = 100
 MAX_NAME: Final = 60
@@ -35,7 +37,7 @@ _OTHER_NAMES = {
     "time": "t", "timestamp": "t", "seconds": "t", "time_ms": "t_ms", "ostime": "t_ms", "milliseconds": "t_ms",
     "latitude": "lat", "longitude": "lon", "lng": "lon", "altitude": "alt", "height": "alt", "elevation": "alt",
     "velocity": "speed", "sog": "speed", "heading": "course", "cog": "course", "bearing": "course", "gps_fix": "fix",
-    "valid": "fix", "climb": "vz",
+    "valid": "fix", "climb": "vz", "temperature": "temp", "steering": "steer", "baro": "pressure",
 }  # fmt: skip
 
 
@@ -51,7 +53,7 @@ def check_names(names: Sequence[str], line: int | None) -> tuple[str, ...]:
     if len(names) > MAX_COLUMNS or any(len(name) > MAX_NAME for name in names):
         expected = f"at most {MAX_COLUMNS} columns, their names no longer than {MAX_NAME} characters"
         raise FormatError.unreadable(Problem(line, None, expected, f"expected {expected}"))
-    unknown = [name for name in names if name not in READ and name not in NOT_READ]
+    unknown = [name for name in names if name not in READ]
     problems = [
         *(Problem(line, printable(name), "each column once", "the column is there twice") for name in _twice(names)),
         *(Problem(line, name, f'a column "{name}"', _missing(name, unknown)) for name in _lacking(set(names))),
@@ -70,7 +72,7 @@ def _twice(names: Sequence[str]) -> list[str]:
 def _lacking(names: set[str]) -> list[str]:
     """Columns that are needed, or needed because of others that are there."""
     needed = [*(() if "t_ms" in names else ("t",)), *ACCELERATION, "fix"]
-    needed += [name for group in (RATE, POSITION) if names & set(group) for name in group]
+    needed += [name for group in (RATE, FIELD, POSITION) if names & set(group) for name in group]
     if not names & set(POSITION):
         needed += VELOCITY
     return [name for name in needed if name not in names]
@@ -90,14 +92,13 @@ def _hint(name: str) -> str:
 def _known_name(name: str) -> str | None:
     """Guess the known column that an unknown name stands for."""
     plain = name.strip().lower()
-    known = (*READ, *NOT_READ)
     axis = plain[-1:] if plain[-1:] in tuple("xyz") else ""
     for beginning, letter in (("acc", "a"), ("gyr", "g"), ("mag", "m")):
         if axis and plain.startswith(beginning):
             return letter + axis
     if plain in _OTHER_NAMES:
         return _OTHER_NAMES[plain]
-    return next(iter(get_close_matches(plain, known, 1, cutoff=0.65)), None)
+    return next(iter(get_close_matches(plain, READ, 1, cutoff=0.65)), None)
 
 
 class NativeTable:
@@ -136,7 +137,8 @@ class NativeTable:
             none_rows,
             fix,
         )
-        if fixes < 0:
+        others = {name: table.columns[name] for name in (*FIELD, *OTHERS) if name in table.names}
+        if fixes < 0 or not _sound(others):
             checks.refuse(_faults(table.columns, time), locate)
             raise AssertionError("a sound chunk was found to be none")
         # copies: what was set aside for the rows that there might have been is given back
@@ -145,12 +147,22 @@ class NativeTable:
             none_rows[:nones].copy(),
             fix[:fixes].copy(),
         )
+        self._m_s = np.stack([others[name] for name in FIELD], axis=-1) if FIELD[0] in others else None
+        self._others = [others.get(name) for name in OTHERS]
 
     def read(self, context: Context) -> Reading:
         """Give the samples; `context` keeps the time of the last fix."""
         none_rows = without_fix(self._t, self._fix_rows, self._none_rows, context)
         samples = make_samples(self._t, self._f_s, self._w_s, self._fix_rows, self._fix, none_rows)
+        if self._m_s is not None or any(column is not None for column in self._others):
+            steer, temperature, pressure = self._others
+            samples = replace(samples, m_s=self._m_s, steer=steer, temperature=temperature, pressure=pressure)
         return Reading(samples, {}, context)
+
+
+def _sound(others: Columns) -> bool:
+    """Tell whether the columns that the estimator does not use keep their rules."""
+    return not any(np.isinf(column).any() for column in others.values()) and not _incomplete_rows(others, FIELD)
 
 
 def _faults(columns: Columns, time: str) -> list[Fault]:
@@ -159,22 +171,23 @@ def _faults(columns: Columns, time: str) -> list[Fault]:
     return [
         *checks.finite(columns, time, *ACCELERATION),
         *checks.in_order(columns, time),
-        *checks.finite_or_empty(columns, *RATE, *GPS),
+        *checks.finite_or_empty(columns, *RATE, *GPS, *FIELD, *OTHERS),
         *checks.flag(columns, "fix"),
-        *_incomplete_rates(columns),
+        *_incomplete_rows(columns, RATE),
+        *_incomplete_rows(columns, FIELD),
         *_out_of_range(fix, rows),
         *_incomplete_fixes(fix, rows),
     ]
 
 
-def _incomplete_rates(columns: Columns) -> list[Fault]:
-    """Find rows that give some but not all axes of the gyroscope."""
-    if "gx" not in columns:
+def _incomplete_rows(columns: Columns, axes: tuple[str, str, str]) -> list[Fault]:
+    """Find rows that give some but not all axes of the gyroscope or the magnetometer."""
+    if axes[0] not in columns:
         return []
-    empty = np.isnan([columns[name] for name in RATE])
+    empty = np.isnan([columns[name] for name in axes])
     partly = empty.any(axis=0) & ~empty.all(axis=0)
-    expected = "gx, gy and gz all filled or all empty"
-    return [fault for i, name in enumerate(RATE) for fault in checks.first(partly & empty[i], name, expected)]
+    expected = f"{axes[0]}, {axes[1]} and {axes[2]} all filled or all empty"
+    return [fault for i, name in enumerate(axes) for fault in checks.first(partly & empty[i], name, expected)]
 
 
 def _out_of_range(fix: Columns, rows: Rows) -> list[Fault]:

@@ -7,12 +7,13 @@ import pyarrow as pa
 import pyarrow.csv
 
 from api.formats.delimited import Columns, Floats
-from api.formats.native import ACCELERATION, GPS, RATE
+from api.formats.native import ACCELERATION, FIELD, GPS, OTHERS, RATE
 from core import Samples
 
 _DECIMALS = dict.fromkeys(("t", "alt", "speed_acc", "course_acc", "course"), 4) | dict.fromkeys(ACCELERATION, 5)
 _DECIMALS |= dict.fromkeys(RATE, 6) | {"lat": 8, "lon": 8, "speed": 4, "vz": 4}
-"""enough that rounding stays far below the sensors' noise: 0.1 ms, 10 um/s2, 1 urad/s, 1 mm, 0.1 mm/s"""
+_DECIMALS |= dict.fromkeys(FIELD, 3) | {"steer": 5, "temp": 2, "pressure": 2}
+"""enough that rounding stays far below the sensors' noise: 0.1 ms, 10 um/s2, 1 urad/s, 1 mm, 0.1 mm/s, 1 nT, 1 cPa"""
 
 _ALWAYS = frozenset({"t", *ACCELERATION, "lat", "lon", "alt", "speed", "course"})
 
@@ -20,6 +21,10 @@ _ALWAYS = frozenset({"t", *ACCELERATION, "lat", "lon", "alt", "speed", "course"}
 def write_native_csv(samples: Samples) -> bytes:
     """Write samples as native CSV, rounded to sensible decimals; columns nobody filled are left out."""
     columns = {"t": samples.t, **_by_name(ACCELERATION, samples.f_s), **_by_name(RATE, samples.w_s)}
+    if samples.m_s is not None:
+        columns |= _by_name(FIELD, samples.m_s)
+    others = (samples.steer, samples.temperature, samples.pressure)
+    columns |= {name: values for name, values in zip(OTHERS, others, strict=True) if values is not None}
     table = {
         name: pa.array(_rounded(name, values), from_pandas=True)
         for name, values in columns.items()

@@ -15,7 +15,8 @@ FIXES = np.arange(16.0).reshape(2, 8)
 
 
 def columns(samples: Samples) -> list[NDArray[Any]]:
-    return [getattr(samples, field.name) for field in fields(samples)]
+    given = [getattr(samples, field.name) for field in fields(samples)]
+    return [values for values in given if values is not None]
 
 
 def usual() -> Samples:

@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from api.formats import FormatError, Limits, ParsedLog, Problem, parse
 from api.formats.delimited import DelimitedText
+from api.formats.log import Reading
+from api.formats.writer import write_native_csv
 from core.samples import ALTITUDE, COURSE, LATITUDE, LONGITUDE, SPEED
 
 HEADER = "t,ax,ay,az,gx,gy,gz,fix,lat,lon,alt,speed,course"
@@ -101,8 +103,41 @@ def test_unknown_columns_are_reported_once_with_the_name_that_is_close() -> None
     assert '"speed"' in notices[1]
 
 
-def test_known_columns_that_are_not_used_are_not_reported() -> None:
-    assert read(log(*(row + ",20,junk" for row in ROWS), header=HEADER + ",temp,mx")).notices == ()
+MORE = "mx,my,mz,steer,temp,pressure"
+
+
+def with_more(cells: str) -> Reading:
+    return read(log(*(f"{row},{cells}" for row in ROWS), header=f"{HEADER},{MORE}")).samples()
+
+
+def test_magnetometer_steering_wheel_temperature_and_pressure_are_read() -> None:
+    samples = with_more("20,-3,41.5,0.1,,101325").samples
+    assert samples.m_s is not None
+    assert samples.steer is not None
+    assert samples.temperature is not None
+    assert samples.pressure is not None
+    np.testing.assert_array_equal(samples.m_s, [[20, -3, 41.5]] * len(ROWS))
+    np.testing.assert_array_equal(samples.steer, [0.1] * len(ROWS))
+    assert np.isnan(samples.temperature).all()
+    np.testing.assert_array_equal(samples.pressure, [101325] * len(ROWS))
+
+
+def test_without_those_columns_there_are_none() -> None:
+    samples = read(log(*ROWS)).samples().samples
+    assert (samples.m_s, samples.steer, samples.temperature, samples.pressure) == (None, None, None, None)
+
+
+def test_what_was_written_is_read_again_with_all_columns() -> None:
+    samples = with_more("20,-3,41.5,0.1,21.25,101325").samples
+    again = read(write_native_csv(samples)).samples().samples
+    for name in ("m_s", "steer", "temperature", "pressure"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(samples, name))
+
+
+@pytest.mark.parametrize(("cells", "column"), [("1,,3,,,", "my"), ("1,2,3,inf,,", "steer"), ("1,2,3,,,x", "pressure")])
+def test_of_those_columns_too_the_faulty_cell_is_named(cells: str, column: str) -> None:
+    found = problem(log(*(f"{row},{cells}" for row in ROWS), header=f"{HEADER},{MORE}"))
+    assert (found.line, found.column) == (2, column)
 
 
 @pytest.mark.parametrize(
