@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel bench-load bench-age bench-page fuzz fuzz-api clean
+.PHONY: setup demo serve check test lint format lock bench bench-accuracy bench-kernel bench-load bench-age bench-page bench-motion fuzz fuzz-api clean
 
 setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the command livella, and the built page
 
@@ -50,7 +50,7 @@ check: lint  ## lint, types and unit tests in under 3 minutes
 	cd web && npm test
 
 lock:  ## pin what pyproject.toml allows
-	uv pip compile -q pyproject.toml --extra dev --extra otel --universal --python-version 3.11 --no-header --no-annotate -o requirements.lock
+	uv pip compile -q pyproject.toml --extra dev --extra otel --extra plot --extra video --universal --python-version 3.11 --no-header --no-annotate -o requirements.lock
 
 # The kernel is compiled, so its coverage is seen by running it uncompiled, beside the browser tests.
 test: setup  ## everything
@@ -65,7 +65,7 @@ test: setup  ## everything
 	pytest -m "not browser" --ignore tests/core -n 3
 
 bench: setup
-	for b in accuracy age kernel load page thesis; do $(BIN)/python benchmarks/$$b.py || exit 1; done
+	for b in accuracy age kernel load motion page thesis; do $(BIN)/python benchmarks/$$b.py || exit 1; done
 
 bench-accuracy: setup  ## accuracy, honesty and alarms on thousands of drives: writes docs/accuracy.md
 	$(BIN)/python benchmarks/accuracy.py
@@ -81,6 +81,9 @@ bench-age: setup  ## uploads, lists and charts after a year, 7 minutes: writes d
 
 bench-page: setup  ## how soon the page comes and how smoothly it moves, 3 minutes: writes docs/performance.md
 	$(BIN)/python benchmarks/page.py
+
+bench-motion: setup  ## attitude, sideslip, steering and impacts on simulated drives: writes docs/attitude.md and docs/motion.md
+	$(BIN)/python benchmarks/motion.py
 
 FUZZ_SECONDS ?= 80
 fuzz: setup  ## every parser against made-up bytes, 11 minutes; FUZZ_SECONDS for each of the eight. Findings in out/fuzz
