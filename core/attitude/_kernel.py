@@ -1,1 +1,1 @@
-"""Every numba function of the attitude filters; imports nothing of the project, so that numba's cache is never stale."""
+"""Every numba function of the attitude filters; imports nothing of the project: numba's cache watches one file."""
