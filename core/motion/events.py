@@ -33,7 +33,7 @@ class MotionEvent(NamedTuple):
     peak: float
     """m/s2 on the plan, gravity taken out; of a pothole: along the vehicle's vertical"""
     direction: float
-    """rad on the plan, where the push came from, anti-clockwise from forward: 0 from the front, pi/2 from the left; nan of
+    """rad on the plan, where the push came from, anti-clockwise from forward: 0 the front, pi/2 the left; nan of
     a pothole"""
     velocity_change: tuple[float, float]
     """m/s forward and to the left, the integral of the acceleration from start to end"""
