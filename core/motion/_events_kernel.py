@@ -15,8 +15,12 @@ IMPACT, BRAKING, ACCELERATION, CORNERING, POTHOLE = range(5)
 OUT = 9
 """kind, t, start, duration, peak, direction, change of the velocity forward and to the left, speed"""
 SPEED, COURSE = 3, 4
-FLAT, FLAT_REPEATS, FLAT_LEAST = 3e-3, 2, 30.0
-"""An axis at the end of its range repeats itself within this share, this many times, at this many m/s2."""
+FLAT, FLAT_LEAST = 3e-3, 30.0
+"""An axis at the end of its range repeats itself within this share, at this many m/s2 or more."""
+COURSES = 36
+COURSES_X = np.cos(2.0 * np.pi * np.arange(COURSES) / COURSES)
+COURSES_Y = np.sin(2.0 * np.pi * np.arange(COURSES) / COURSES)
+"""Directions a push is compared with where the accelerometer's range ends."""
 
 
 @njit(cache=True, nogil=True)
@@ -82,7 +86,7 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
             by += base * _clip(ay - by, p.base_clip)
             bz += base * _clip(z - bz, p.base_clip)
         if r.phase != IDLE or ex * ex + ey * ey > p.pulse_level * p.pulse_level:
-            count = _pulse(p, r, t, dt, ax, ay, ex, ey, z - bz, f0, f1, f2, handled, interval, out, count)
+            count = _pulse(p, r, turn, t, dt, ax, ay, ex, ey, z - bz, f0, f1, f2, handled, interval, out, count)
         # harsh driving
         ux += smooth * (_clip(ax / lean_x, p.harsh_clip) - ux)
         uy += smooth * (_clip(ay / lean_y, p.harsh_clip) - uy)
@@ -167,7 +171,7 @@ def _break_off(p, r, handled, interval, out, count):
 
 
 @njit(cache=True, nogil=True)
-def _pulse(p, r, t, dt, ax, ay, ex, ey, ez, f0, f1, f2, handled, interval, out, count):
+def _pulse(p, r, turn, t, dt, ax, ay, ex, ey, ez, f0, f1, f2, handled, interval, out, count):
     """Follow a pulse on the plan from its first sample to the end of the time after it in which it may be dismissed."""
     size = math.sqrt(ex * ex + ey * ey)
     if r.phase == AFTER:
@@ -182,12 +186,12 @@ def _pulse(p, r, t, dt, ax, ay, ex, ey, ez, f0, f1, f2, handled, interval, out, 
     if r.phase == IDLE:
         if t < r.quiet_end or handled > t:
             return count
-        _begin_pulse(p, r, t, dt, f0, f1, f2)
-    _gather(r, dt, ax, ay, ex, ey, ez, size, f0, f1, f2)
+        _begin_pulse(p, r, t, dt)
+    _gather(r, turn, dt, ax, ay, ex, ey, ez, size, f0, f1, f2)
     if size > r.excess:
         r.excess, r.peak_t = size, t
     r.peak = max(r.peak, math.sqrt(ax * ax + ay * ay))
-    if size > max(p.pulse_level, p.pulse_end_share * r.excess):
+    if size > min(max(p.pulse_level, p.pulse_end_share * r.excess), p.pulse_end_level):
         r.pulse_end = t
     if t - r.pulse_end > p.pulse_pause or t - r.peak_t > p.pulse_longest:
         r.phase = AFTER if r.told or _is_impact(p, r, handled, interval) else IDLE
@@ -195,22 +199,20 @@ def _pulse(p, r, t, dt, ax, ay, ex, ey, ez, f0, f1, f2, handled, interval, out, 
 
 
 @njit(cache=True, nogil=True)
-def _begin_pulse(p, r, t, dt, f0, f1, f2):
+def _begin_pulse(p, r, t, dt):
     r.phase, r.told = PULSE, 0
     r.pulse_start, r.pulse_end, r.peak_t = t - dt, t, t
     r.pulse_speed = _speed(p, r, t)
-    r.peak = r.excess = r.up = r.change_up = r.path = 0.0
+    r.peak = r.excess = r.up = r.change_up = r.path = r.clipped = r.before_dt = r.range_end = 0.0
     r.change[:] = 0.0
     r.push[:] = 0.0
-    r.free[:] = 0.0
-    r.flat[:] = 0.0
-    r.repeats = r.clipped = 0
-    r.before[0], r.before[1], r.before[2] = f0, f1, f2
+    r.costs[:] = 0.0
+    r.before[:] = 0.0
 
 
 @njit(cache=True, nogil=True)
-def _gather(r, dt, ax, ay, ex, ey, ez, size, f0, f1, f2):
-    """Add a sample to the integrals; `free` leaves out what was read at the end of the accelerometer's range."""
+def _gather(r, turn, dt, ax, ay, ex, ey, ez, size, f0, f1, f2):
+    """Add a sample to the integrals."""
     r.change[0] += ax * dt
     r.change[1] += ay * dt
     r.push[0] += ex * dt
@@ -218,24 +220,70 @@ def _gather(r, dt, ax, ay, ex, ey, ez, size, f0, f1, f2):
     r.path += size * dt
     r.change_up += ez * dt
     r.up = max(r.up, abs(ez))
-    if _repeats(f0, r.before[0]) or _repeats(f1, r.before[1]) or _repeats(f2, r.before[2]):
-        r.repeats += 1
-    else:
-        if r.repeats < FLAT_REPEATS:
-            r.free[0] += r.flat[0]
-            r.free[1] += r.flat[1]
-        else:
-            r.clipped += r.repeats + 1
-        r.repeats = 0
-        r.flat[:] = 0.0
-    r.flat[0] += ex * dt
-    r.flat[1] += ey * dt
-    r.before[0], r.before[1], r.before[2] = f0, f1, f2
+    now = (f0, f1, f2)
+    flat = (_is_flat(r, 0, f0), _is_flat(r, 1, f1), _is_flat(r, 2, f2))
+    _compare(r, turn, flat)
+    if max(abs(f0), abs(f1), abs(f2)) > (1.0 + FLAT) * r.range_end:
+        r.range_end = 0.0
+    for i in range(3):
+        r.before_flat[i] = flat[i] or (r.range_end > 0.0 and abs(now[i]) >= (1.0 - FLAT) * r.range_end)
+        r.before[i] = now[i]
+        r.before_excess[i] = turn[0, i] * ex + turn[1, i] * ey + turn[2, i] * ez
+    r.before_dt = dt
 
 
 @njit(cache=True, nogil=True)
-def _repeats(value, before):
-    return abs(value) > FLAT_LEAST and abs(value - before) <= FLAT * abs(value)
+def _is_flat(r, axis, value):
+    """Whether an axis repeats itself as it does at the end of its range, which is learnt so."""
+    if abs(value) < FLAT_LEAST or abs(value - r.before[axis]) > FLAT * abs(value):
+        return False
+    r.range_end = max(r.range_end, abs(value))
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _compare(r, turn, flat):
+    """Ask of each direction how far the sample before is from a push along it; an axis at the end of its range may
+    have been pushed further.
+    """
+    h, active = r.before_excess, r.active
+    any_flat = False
+    for i in range(3):
+        r.before_flat[i] = r.before_flat[i] or flat[i]
+        any_flat = any_flat or r.before_flat[i]
+    if any_flat:
+        r.clipped += r.before_dt
+    for j in range(COURSES):
+        d = (
+            turn[0, 0] * COURSES_X[j] + turn[1, 0] * COURSES_Y[j],
+            turn[0, 1] * COURSES_X[j] + turn[1, 1] * COURSES_Y[j],
+            turn[0, 2] * COURSES_X[j] + turn[1, 2] * COURSES_Y[j],
+        )
+        active[:] = 1
+        push = 0.0
+        for _ in range(3 if any_flat else 1):
+            along = square = 0.0
+            for i in range(3):
+                if active[i]:
+                    along += d[i] * h[i]
+                    square += d[i] * d[i]
+            if square > 1e-6:
+                push = max(along / square, 0.0)
+            for i in range(3):
+                active[i] = not (r.before_flat[i] and (push * d[i] - h[i]) * r.before[i] >= 0.0)
+        for i in range(3):
+            if active[i]:
+                r.costs[j] += (push * d[i] - h[i]) ** 2 * r.before_dt
+
+
+@njit(cache=True, nogil=True)
+def _best_course(costs):
+    """Direction of the smallest cost, by a parabola through its neighbours."""
+    j = np.argmin(costs)
+    left, middle, right = costs[j - 1], costs[j], costs[(j + 1) % COURSES]
+    bend = left - 2.0 * middle + right
+    shift = 0.5 * (left - right) / bend if bend > 0.0 else 0.0
+    return 2.0 * math.pi * (j + shift) / COURSES
 
 
 @njit(cache=True, nogil=True)
@@ -247,20 +295,16 @@ def _is_impact(p, r, handled, interval):
         and push >= p.impact_velocity
         and push >= p.impact_one_way * r.path
         and push >= p.impact_shortest * r.excess
-        and r.up <= p.impact_up * r.excess
-        and abs(r.change_up) <= p.impact_up_velocity * push
+        and (r.clipped >= p.impact_shortest or r.up <= p.impact_up * r.excess)
+        and (r.clipped >= p.impact_shortest or abs(r.change_up) <= p.impact_up_velocity * push)
         and not handled > r.pulse_start
     )
 
 
 @njit(cache=True, nogil=True)
 def _tell_impact(r, end, out, count):
-    push_x, push_y = r.push[0], r.push[1]
-    if r.clipped > 0 or r.repeats >= FLAT_REPEATS:
-        push_x, push_y = r.free[0], r.free[1]
-        if r.repeats < FLAT_REPEATS:
-            push_x, push_y = push_x + r.flat[0], push_y + r.flat[1]
-    direction = math.atan2(-push_y, -push_x)
+    course = _best_course(r.costs) if r.clipped > 0.0 else math.atan2(r.push[1], r.push[0])
+    direction = (course + 2.0 * math.pi) % (2.0 * math.pi) - math.pi
     r.told = 1
     return _tell(
         out, count, IMPACT, r.peak_t, r.pulse_start, end, r.peak, direction, r.change[0], r.change[1], r.pulse_speed

@@ -83,7 +83,7 @@ class EventParameters:
     """m/s2; more is no driving and is cut off before the low-passes"""
     moving_speed: float = threshold(1.5, "m/s", "Slower vehicles neither drive harshly nor meet potholes.")
     impact_rate: float = threshold(45.0, "Hz", "Impacts and potholes are told from this sampling rate on.")
-    impact_peak: float = threshold(24.0, "m/s2", "Impact: the acceleration on the plan reaches it.")
+    impact_peak: float = threshold(22.0, "m/s2", "Impact: the acceleration on the plan reaches it.")
     impact_velocity: float = threshold(0.55, "m/s", "Impact: the pulse changes the velocity by at least this.")
     impact_one_way: float = threshold(
         0.6, "", "Impact: change of the velocity over the integral of the acceleration's size; shaking has little."
@@ -96,7 +96,8 @@ class EventParameters:
     impact_wait: float = threshold(0.4, "s", "After the pulse the device must have stayed in its place for so long.")
     impact_refractory: float = threshold(1.0, "s", "The next impact is told this much later.")
     pulse_level: float = threshold(6.0, "m/s2", "A pulse begins above, over the acceleration just before it.")
-    pulse_end_share: float = threshold(0.25, "", "A pulse ends below this share of its peak.")
+    pulse_end_share: float = threshold(0.35, "", "A pulse ends below this share of its peak,")
+    pulse_end_level: float = threshold(10.0, "m/s2", "or below this, more than the tyres' friction.")
     pulse_pause: float = threshold(0.025, "s", "A pulse has ended when it has been lower for so long.")
     pulse_longest: float = threshold(0.2, "s", "A pulse is not followed longer than this after its peak.")
     base_time: float = threshold(0.5, "s", "Time constant of the average a pulse stands out from.")
@@ -161,11 +162,14 @@ LAYOUT = np.dtype(
         ("push", "f8", (2,)),  # m/s, integral over the base
         ("change_up", "f8"),  # m/s
         ("path", "f8"),  # m/s, integral of the size
-        ("free", "f8", (2,)),  # m/s, integral without what was read at the end of the range
-        ("flat", "f8", (2,)),  # m/s, integral since an axis has repeated itself
-        ("repeats", "i8"),
-        ("clipped", "i8"),  # samples at the end of the range
+        ("costs", "f8", (_events_kernel.COURSES,)),  # m2/s3, of directions of the push
+        ("range_end", "f8"),  # m/s2, end of the accelerometer's range, 0 = not seen
+        ("clipped", "f8"),  # s at the end of the range
         ("before", "f8", (3,)),  # m/s2, last reading, sensor axes
+        ("before_excess", "f8", (3,)),  # m/s2, the same over the base
+        ("before_flat", "i8", (3,)),  # at the end of the range
+        ("before_dt", "f8"),  # s
+        ("active", "i8", (3,)),  # scratch
         ("quiet_end", "f8"),  # s, no impact begins before
         ("smooth", "f8", (4,)),  # m/s2, of the two low-passes
         ("harsh_on", "i8", (3,)),  # braking, acceleration, cornering
