@@ -30,13 +30,15 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
     n = ts.size
     k = np.searchsorted(fix_row, first)
     ox, oy, bx, by, bz = r.offset[0], r.offset[1], r.base[0], r.base[1], r.base[2]
+    rx, ry, rz = r.rest[0], r.rest[1], r.rest[2]
     ux, uy, sx, sy = r.smooth[0], r.smooth[1], r.smooth[2], r.smooth[3]
     tx, ty, low, high, variance = r.tilt[0], r.tilt[1], r.low, r.high, r.variance
     last, step, interval, handled = r.t, r.step, r.interval, r.handled
     gx, gy, reference_end = r.reference[0], r.reference[1], r.reference_end
     lean_x, lean_y = 1.0 + GRAVITY * p.pitch_per_acceleration, 1.0 + GRAVITY * p.roll_per_acceleration
-    known, unknown, base, smooth, tilting, fall, rise, road, pace = _shares(p, step)
-    limit2 = p.handled_tilt * p.handled_tilt
+    known, unknown, base, rest, smooth, tilting, fall, rise, road, pace = _shares(p, step)
+    tilt2, plan2, pulse2 = p.handled_tilt**2, p.handled_plan**2, p.pulse_level**2
+    pothole2, ratio2 = p.pothole**2, p.pothole_ratio**2
     i = first
     while i < n and count + 6 < out.shape[0]:
         t = ts[i]
@@ -54,14 +56,14 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
         z = turn[2, 0] * f0 + turn[2, 1] * f1 + turn[2, 2] * f2 - GRAVITY
         if not dt <= p.max_gap:
             count = _break_off(p, r, handled, interval, out, count)
-            bx = by = bz = ux = uy = sx = sy = tx = ty = high = 0.0
+            bx = by = bz = rx = ry = rz = ux = uy = sx = sy = tx = ty = high = 0.0
             low, last, handled = z, t, -math.inf
             i += 1
             continue
         last = t
         if abs(dt - step) > 1e-6:
             step = dt
-            known, unknown, base, smooth, tilting, fall, rise, road, pace = _shares(p, step)
+            known, unknown, base, rest, smooth, tilting, fall, rise, road, pace = _shares(p, step)
         interval += pace * (dt - interval)
         # gravity, road and bias: what the receiver's acceleration does not explain, slowly
         if t <= reference_end:
@@ -77,7 +79,11 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
         if not math.isnan(wx + wy):
             tx += wx * dt - tilting * tx
             ty += wy * dt - tilting * ty
-        if tx * tx + ty * ty > limit2 or abs(bz) > p.handled_up or bx * bx + by * by > p.handled_plan * p.handled_plan:
+        if r.phase != PULSE:
+            rx += rest * (_clip(ax, p.base_clip) - rx)
+            ry += rest * (_clip(ay, p.base_clip) - ry)
+            rz += rest * (_clip(z, p.base_clip) - rz)
+        if tx * tx + ty * ty > tilt2 or abs(rz) > p.handled_up or rx * rx + ry * ry > plan2:
             handled = t + p.handled_time
         # impacts
         ex, ey = ax - bx, ay - by
@@ -85,7 +91,7 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
             bx += base * _clip(ax - bx, p.base_clip)
             by += base * _clip(ay - by, p.base_clip)
             bz += base * _clip(z - bz, p.base_clip)
-        if r.phase != IDLE or ex * ex + ey * ey > p.pulse_level * p.pulse_level:
+        if r.phase != IDLE or ex * ex + ey * ey > pulse2:
             count = _pulse(p, r, turn, t, dt, ax, ay, ex, ey, z - bz, f0, f1, f2, handled, interval, out, count)
         # harsh driving
         ux += smooth * (_clip(ax / lean_x, p.harsh_clip) - ux)
@@ -102,13 +108,14 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
         low += fall * (z - low)
         high += rise * (z - low - high)
         power = high * high
-        if r.pothole_on or (power > p.pothole * p.pothole and power > p.pothole_ratio * p.pothole_ratio * variance):
+        if r.pothole_on or (power > pothole2 and power > ratio2 * variance):
             count = _pothole(p, r, t, high, handled, interval, out, count)
-        variance += road * (min(power, p.pothole * p.pothole) - variance)
+        variance += road * (min(power, pothole2) - variance)
         i += 1
     if i == n and count < out.shape[0]:
         count = _tell_at_once(p, r, handled, interval, out, count)
     r.offset[0], r.offset[1], r.base[0], r.base[1], r.base[2] = ox, oy, bx, by, bz
+    r.rest[0], r.rest[1], r.rest[2] = rx, ry, rz
     r.smooth[0], r.smooth[1], r.smooth[2], r.smooth[3] = ux, uy, sx, sy
     r.tilt[0], r.tilt[1], r.low, r.high, r.variance = tx, ty, low, high, variance
     r.t, r.step, r.interval, r.handled = last, step, interval, handled
@@ -127,6 +134,7 @@ def _shares(p, dt):
         dt / (p.offset_time + dt),
         dt / (p.offset_time_without_fixes + dt),
         dt / (p.base_time + dt),
+        dt / (p.rest_time + dt),
         dt / (p.harsh_smoothing + dt),
         dt / (p.tilt_time + dt),
         dt / (1.0 / (2.0 * math.pi * p.pothole_low) + dt),
@@ -187,11 +195,11 @@ def _pulse(p, r, turn, t, dt, ax, ay, ex, ey, ez, f0, f1, f2, handled, interval,
         if t < r.quiet_end or handled > t:
             return count
         _begin_pulse(p, r, t, dt)
-    _gather(r, turn, dt, ax, ay, ex, ey, ez, size, f0, f1, f2)
+    _gather(p, r, turn, dt, ax, ay, ex, ey, ez, size, f0, f1, f2)
     if size > r.excess:
         r.excess, r.peak_t = size, t
     r.peak = max(r.peak, math.sqrt(ax * ax + ay * ay))
-    if size > min(max(p.pulse_level, p.pulse_end_share * r.excess), p.pulse_end_level):
+    if size > min(max(p.pulse_level, p.pulse_end_share * r.excess), p.impact_level):
         r.pulse_end = t
     if t - r.pulse_end > p.pulse_pause or t - r.peak_t > p.pulse_longest:
         r.phase = AFTER if r.told or _is_impact(p, r, handled, interval) else IDLE
@@ -211,13 +219,14 @@ def _begin_pulse(p, r, t, dt):
 
 
 @njit(cache=True, nogil=True)
-def _gather(r, turn, dt, ax, ay, ex, ey, ez, size, f0, f1, f2):
+def _gather(p, r, turn, dt, ax, ay, ex, ey, ez, size, f0, f1, f2):
     """Add a sample to the integrals."""
     r.change[0] += ax * dt
     r.change[1] += ay * dt
-    r.push[0] += ex * dt
-    r.push[1] += ey * dt
-    r.path += size * dt
+    if size > p.impact_level:
+        r.push[0] += ex * dt
+        r.push[1] += ey * dt
+        r.path += size * dt
     r.change_up += ez * dt
     r.up = max(r.up, abs(ez))
     now = (f0, f1, f2)
@@ -293,8 +302,8 @@ def _is_impact(p, r, handled, interval):
         interval <= 1.0 / p.impact_rate
         and r.peak >= p.impact_peak
         and push >= p.impact_velocity
-        and push >= p.impact_one_way * r.path
         and push >= p.impact_shortest * r.excess
+        and push >= p.impact_one_way * r.path
         and (r.clipped >= p.impact_shortest or r.up <= p.impact_up * r.excess)
         and (r.clipped >= p.impact_shortest or abs(r.change_up) <= p.impact_up_velocity * push)
         and not handled > r.pulse_start

@@ -83,28 +83,29 @@ class EventParameters:
     """m/s2; more is no driving and is cut off before the low-passes"""
     moving_speed: float = threshold(1.5, "m/s", "Slower vehicles neither drive harshly nor meet potholes.")
     impact_rate: float = threshold(45.0, "Hz", "Impacts and potholes are told from this sampling rate on.")
-    impact_peak: float = threshold(22.0, "m/s2", "Impact: the acceleration on the plan reaches it.")
-    impact_velocity: float = threshold(0.55, "m/s", "Impact: the pulse changes the velocity by at least this.")
+    impact_peak: float = threshold(24.0, "m/s2", "Impact: the acceleration on the plan reaches it.")
+    impact_level: float = threshold(12.0, "m/s2", "Impact: what tyres cannot do, over the acceleration before it.")
+    impact_velocity: float = threshold(0.55, "m/s", "Impact: change of the velocity while above that level.")
     impact_one_way: float = threshold(
         0.6, "", "Impact: change of the velocity over the integral of the acceleration's size; shaking has little."
     )
     impact_shortest: float = threshold(
-        0.012, "s", "Impact: change of the velocity over the peak; knocks at the device are shorter."
+        0.012, "s", "Impact: that change over the peak; knocks at the device are shorter."
     )
     impact_up: float = threshold(1.2, "", "Impact: largest vertical acceleration over the peak on the plan.")
     impact_up_velocity: float = threshold(0.8, "", "Impact: change of the velocity, vertical over on the plan.")
-    impact_wait: float = threshold(0.4, "s", "After the pulse the device must have stayed in its place for so long.")
+    impact_wait: float = threshold(2.0, "s", "After the pulse the device must have stayed in its place for so long.")
     impact_refractory: float = threshold(1.0, "s", "The next impact is told this much later.")
     pulse_level: float = threshold(6.0, "m/s2", "A pulse begins above, over the acceleration just before it.")
-    pulse_end_share: float = threshold(0.35, "", "A pulse ends below this share of its peak,")
-    pulse_end_level: float = threshold(10.0, "m/s2", "or below this, more than the tyres' friction.")
+    pulse_end_share: float = threshold(0.4, "", "A pulse ends below this share of its peak, or `impact_level`.")
     pulse_pause: float = threshold(0.025, "s", "A pulse has ended when it has been lower for so long.")
     pulse_longest: float = threshold(0.2, "s", "A pulse is not followed longer than this after its peak.")
-    base_time: float = threshold(0.5, "s", "Time constant of the average a pulse stands out from.")
+    base_time: float = threshold(0.12, "s", "Time constant of the average a pulse stands out from.")
     base_clip: float = 15.0
-    """m/s2; what stands out further counts as this much in the average"""
-    handled_tilt: float = threshold(20 * DEGREE, "rad", "The device is handled: it turns so far out of the level.")
-    tilt_time: float = threshold(1.0, "s", "Time constant over which the turn is seen.")
+    """m/s2; what stands out further counts as this much in the averages"""
+    handled_tilt: float = threshold(15 * DEGREE, "rad", "The device is handled: it turns so far out of the level.")
+    tilt_time: float = threshold(2.0, "s", "Time constant over which the turn is seen.")
+    rest_time: float = threshold(0.5, "s", "Time constant of the two averages that follow.")
     handled_up: float = threshold(3.5, "m/s2", "The device is handled: the average vertical is so far from gravity.")
     handled_plan: float = threshold(12.0, "m/s2", "The device is handled: the average on the plan is so large.")
     handled_time: float = threshold(5.0, "s", "Nothing is told so long after the device was handled.")
@@ -146,7 +147,8 @@ LAYOUT = np.dtype(
         ("fix_course", "f8"),
         ("reference", "f8", (2,)),  # m/s2 forward and left between the last two fixes
         ("reference_end", "f8"),  # s, trusted until
-        ("base", "f8", (3,)),  # m/s2, the last half second
+        ("base", "f8", (3,)),  # m/s2 just now: what a pulse stands out from
+        ("rest", "f8", (3,)),  # m/s2, of the last half second: is the device upright?
         ("tilt", "f8", (2,)),  # rad about forward and left, of late
         ("handled", "f8"),  # s, nothing is told until
         ("phase", "i8"),  # of a pulse: idle, going on, just after
@@ -159,9 +161,9 @@ LAYOUT = np.dtype(
         ("excess", "f8"),  # m/s2, the same over the base
         ("up", "f8"),  # m/s2, largest vertical
         ("change", "f8", (2,)),  # m/s, integral of the acceleration
-        ("push", "f8", (2,)),  # m/s, integral over the base
+        ("push", "f8", (2,)),  # m/s, integral over the base where it is more than tyres can do
         ("change_up", "f8"),  # m/s
-        ("path", "f8"),  # m/s, integral of the size
+        ("path", "f8"),  # m/s, integral of its size
         ("costs", "f8", (_events_kernel.COURSES,)),  # m2/s3, of directions of the push
         ("range_end", "f8"),  # m/s2, end of the accelerometer's range, 0 = not seen
         ("clipped", "f8"),  # s at the end of the range
