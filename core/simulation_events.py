@@ -37,6 +37,8 @@ SHAPES: dict[str, Callable[[Floats], Floats]] = {
 AREAS = {"haversine": 0.5, "half-sine": 2 / pi, "triangle": 0.5}
 SPIN_TIME = 0.8
 """s in which a vehicle stops spinning"""
+BEFORE = 10
+"""samples before the first contact whose mean tells what the tyres do"""
 WHITE = 0.05
 """m/s2 of noise of a vehicle that has crashed"""
 
@@ -86,12 +88,13 @@ def crash(drive: Drive, hit: Crash, rng: np.random.Generator) -> Samples:
     first = int(np.searchsorted(samples.t, hit.t))
     after = samples.t[first:] - hit.t
     speed = float(np.interp(hit.t, truth.t, truth.speed))
-    path = _slide(hit, after, speed)
+    r_vs = quaternion.matrix(truth.mount_at(hit.t))
+    up_v = quaternion.matrix(truth.q_nv[np.searchsorted(truth.t, hit.t).clip(max=truth.t.size - 1)])[2]
+    tyres = (samples.f_s[max(first - BEFORE, 0) : first].mean(axis=0) - truth.bias) @ r_vs.T - GRAVITY * up_v
+    path = _slide(hit, after, speed, tyres[:2])
     arm = (truth.lever_arm - CENTRE)[:2]
     a_v = path.a_v + path.spin_change[:, None] * [-arm[1], arm[0]] - path.spin[:, None] ** 2 * arm
     f_v = np.column_stack([a_v, np.zeros(after.size)]) + _ringing(hit, after, rng)
-    r_vs = quaternion.matrix(truth.mount_at(hit.t))
-    up_v = quaternion.matrix(truth.q_nv[np.searchsorted(truth.t, hit.t).clip(max=truth.t.size - 1)])[2]
     f_s, w_s = samples.f_s.copy(), samples.w_s.copy()
     f_s[first:] = (f_v + GRAVITY * up_v) @ r_vs + truth.bias + WHITE * rng.normal(size=f_v.shape)
     w_s[first:] = np.where(np.isnan(w_s[first:]), np.nan, path.spin[:, None] * r_vs[2] + truth.gyro_bias)
@@ -116,13 +119,13 @@ class _Path(NamedTuple):
     """(N,) rad/s2"""
 
 
-def _slide(hit: Crash, after: Floats, speed: float) -> _Path:
-    """Pulse, then friction until the vehicle stands."""
+def _slide(hit: Crash, after: Floats, speed: float, tyres: Floats) -> _Path:
+    """Pulse, while the tyres do what they did, then friction until the vehicle stands."""
     x = np.clip(after / hit.duration, 0, 1)
     shape = SHAPES[hit.shape](x)
     spin, spin_change = _spin(hit, after, x)
     turn = np.exp(1j * np.concatenate([[0.0], np.cumsum(0.5 * (spin[1:] + spin[:-1]) * np.diff(after))]))
-    push = -hit.peak * np.exp(1j * hit.direction) * shape
+    push = -hit.peak * np.exp(1j * hit.direction) * shape + (x < 1) * complex(*tyres)
     pushed = speed + np.concatenate([[0.0], np.cumsum((push * turn)[1:] * np.diff(after))])
     end = pushed[-1]
     since = np.maximum(after - hit.duration, 0)

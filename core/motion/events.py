@@ -83,8 +83,12 @@ class EventParameters:
     """m/s2; more is no driving and is cut off before the low-passes"""
     moving_speed: float = threshold(1.5, "m/s", "Slower vehicles neither drive harshly nor meet potholes.")
     impact_rate: float = threshold(45.0, "Hz", "Impacts and potholes are told from this sampling rate on.")
-    impact_peak: float = threshold(24.0, "m/s2", "Impact: the acceleration on the plan reaches it.")
-    impact_level: float = threshold(12.0, "m/s2", "Impact: what tyres cannot do, over the acceleration before it.")
+    impact_peak: float = threshold(
+        23.0, "m/s2", "Impact: the acceleration on the plan, over that before it, reaches it."
+    )
+    impact_level: float = threshold(
+        12.0, "m/s2", "Impact: what tyres cannot do, both in all and over the acceleration before."
+    )
     impact_velocity: float = threshold(0.55, "m/s", "Impact: change of the velocity while above that level.")
     impact_one_way: float = threshold(
         0.6, "", "Impact: change of the velocity over the integral of the acceleration's size; shaking has little."
