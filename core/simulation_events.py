@@ -29,7 +29,7 @@ PEAK, DURATION, VELOCITY_CHANGE = (3 * GRAVITY, 40 * GRAVITY), (0.06, 0.15), (2 
 GYRATION = 1.9
 """m2, square of the radius of gyration about the vertical"""
 SHAPES: dict[str, Callable[[Floats], Floats]] = {
-    "haversine": lambda x: np.sin(pi * x) ** 2,
+    "haversine": lambda x: np.square(np.sin(pi * x)),
     "half-sine": lambda x: np.sin(pi * x),
     "triangle": lambda x: 1 - np.abs(2 * x - 1),
 }
@@ -150,7 +150,8 @@ def _area(shape: str, x: Floats) -> Floats:
     """Share of the pulse that is over."""
     grid = np.linspace(0, 1, 513)
     over = np.concatenate([[0.0], np.cumsum(SHAPES[shape](0.5 * (grid[1:] + grid[:-1])))])
-    return np.interp(x, grid, over / over[-1])
+    share: Floats = np.interp(x, grid, over / over[-1])
+    return share
 
 
 def _pair(z: NDArray[np.complex128]) -> Floats:
@@ -161,7 +162,7 @@ def _ringing(hit: Crash, after: Floats, rng: np.random.Generator) -> Floats:
     """(N, 3) damped oscillations of the structure, strongest along the push, and what the pulse lifts or presses."""
     along, across = np.array([np.cos(hit.direction), np.sin(hit.direction), 0]), np.array([0, 0, 1.0])
     sideways = np.cross(across, along)
-    total = np.zeros((after.size, 3))
+    total: Floats = np.zeros((after.size, 3))
     for axis, share in ((along, 1.0), (sideways, 0.6), (across, 0.8)):
         for _ in range(2):
             frequency, decay = rng.uniform(30, 90), rng.uniform(0.02, 0.06)
@@ -171,7 +172,8 @@ def _ringing(hit: Crash, after: Floats, rng: np.random.Generator) -> Floats:
     pulse = SHAPES[hit.shape](np.clip(after / hit.duration, 0, 1))
     lift = rng.normal(0.0, 0.1) * hit.peak * pulse
     rough = 0.05 * hit.peak * pulse[:, None] * rng.normal(size=total.shape)
-    return total + rough + lift[:, None] * across
+    total += rough + lift[:, None] * across
+    return total
 
 
 def _crashed_fixes(drive: Drive, hit: Crash, path: _Path, after: Floats, rng: np.random.Generator) -> Floats:

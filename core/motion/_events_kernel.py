@@ -17,7 +17,7 @@ OUT = 9
 SPEED, COURSE = 3, 4
 FLAT, FLAT_LEAST = 3e-3, 30.0
 """An axis at the end of its range repeats itself within this share, at this many m/s2 or more."""
-COURSES = 36
+COURSES = 32
 COURSES_X = np.cos(2.0 * np.pi * np.arange(COURSES) / COURSES)
 COURSES_Y = np.sin(2.0 * np.pi * np.arange(COURSES) / COURSES)
 """Directions a push is compared with where the accelerometer's range ends."""
@@ -350,6 +350,13 @@ def _tell_at_once(p, r, handled, interval, out, count):
 
 
 @njit(cache=True, nogil=True)
+def _in_impact(p, r, start):
+    """Whether what began at `start` is part of an impact: the jolt of it, or the slide after it."""
+    since = r["quiet_end"] - start
+    return r["phase"] == AFTER or 0.0 <= since <= p["impact_wait"] + p["impact_refractory"] + 1.0
+
+
+@njit(cache=True, nogil=True)
 def _harsh(p, r, kind, threshold, size, t, dt, sx, sy, handled, out, count):
     """Follow a manoeuvre from the threshold up to the lower one down; times are those before the low-pass."""
     h = kind - BRAKING
@@ -371,7 +378,7 @@ def _harsh(p, r, kind, threshold, size, t, dt, sx, sy, handled, out, count):
     start = r["harsh_start"][h] - lag
     now = _speed(p, r, t)
     standing = r["harsh_speed"][h] < p["moving_speed"] and now < p["moving_speed"]
-    if t - lag - start < p["harsh_least"] or handled > r["harsh_start"][h] or standing:
+    if t - lag - start < p["harsh_least"] or handled > r["harsh_start"][h] or standing or _in_impact(p, r, start):
         return count
     return _tell(
         out, count, kind, r["harsh_peak_t"][h], start, t - lag, r["harsh_peak"][h], r["harsh_direction"][h],
@@ -396,9 +403,9 @@ def _pothole(p, r, t, high, handled, interval, out, count):
     if t - r["pothole_end"] < p["pothole_refractory"] and t - r["pothole_start"] < p["pothole_longest"]:
         return count
     r["pothole_on"] = 0
-    if handled > r["pothole_start"] or (r["told"] and r["pothole_start"] - 1.0 < r["peak_t"] < t):
+    if handled > r["pothole_start"] or _in_impact(p, r, r["pothole_start"]):
         return count
     return _tell(
-        out, count, POTHOLE, r["pothole_t"], r["pothole_start"], r["pothole_end"], r["pothole_peak"], math.nan, 0.0, 0.0,
-        r["pothole_speed"],
+        out, count, POTHOLE, r["pothole_t"], r["pothole_start"], r["pothole_end"], r["pothole_peak"],
+        math.nan, 0.0, 0.0, r["pothole_speed"],
     )  # fmt: skip
