@@ -57,7 +57,7 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
         if not dt <= p["max_gap"]:
             count = _break_off(p, r, handled, interval, out, count)
             bx = by = bz = rx = ry = rz = ux = uy = sx = sy = tx = ty = high = 0.0
-            low, last, handled = z, t, -math.inf
+            low, last, handled, r["session_start"] = z, t, -math.inf, t
             i += 1
             continue
         last = t
@@ -378,7 +378,14 @@ def _harsh(p, r, kind, threshold, size, t, dt, sx, sy, handled, out, count):
     start = r["harsh_start"][h] - lag
     now = _speed(p, r, t)
     standing = r["harsh_speed"][h] < p["moving_speed"] and now < p["moving_speed"]
-    if t - lag - start < p["harsh_least"] or handled > r["harsh_start"][h] or standing or _in_impact(p, r, start):
+    early = r["harsh_start"][h] < r["session_start"] + p["harsh_settling"]
+    if (
+        early
+        or t - lag - start < p["harsh_least"]
+        or handled > r["harsh_start"][h]
+        or standing
+        or _in_impact(p, r, start)
+    ):
         return count
     return _tell(
         out, count, kind, r["harsh_peak_t"][h], start, t - lag, r["harsh_peak"][h], r["harsh_direction"][h],

@@ -79,6 +79,7 @@ class EventParameters:
     harsh_least: float = threshold(0.4, "s", "A harsh manoeuvre lasts at least so long.")
     harsh_end_share: float = threshold(0.75, "", "It ends below this share of its threshold.")
     harsh_smoothing: float = threshold(0.1, "s", "Time constant of each of the two low-passes before harsh driving.")
+    harsh_settling: float = threshold(5.0, "s", "No harsh manoeuvre begins so soon after the first sample.")
     harsh_clip: float = 12.0
     """m/s2; more is no driving and is cut off before the low-passes"""
     moving_speed: float = threshold(1.5, "m/s", "Slower vehicles neither drive harshly nor meet potholes.")
@@ -143,6 +144,7 @@ DEFAULT = EventParameters()
 LAYOUT = np.dtype(
     [
         ("t", "f8"),  # s, of the last sample, nan = none
+        ("session_start", "f8"),  # s, or the end of the last gap
         ("step", "f8"),  # s between samples, that the filters' shares belong to
         ("interval", "f8"),  # s, mean of late between samples
         ("offset", "f8", (2,)),  # m/s2 on the plan: gravity on slopes, bias

@@ -105,12 +105,14 @@ def test_the_sign_of_the_quaternion_does_not_matter() -> None:
     assert told(samples, q_vs) == told(samples, -q_vs)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["potholes", "kerbs", "speed humps", "rough stretches", "knocks at the device"])
 @pytest.mark.parametrize("gyro", [True, False])
 def test_roads_and_knocks_are_no_impacts(name: str, gyro: bool) -> None:
     assert not _impacts_of(ON_THE_ROAD[name], drive("city", gyro=gyro), 40)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", AT_REST)
 def test_doors_and_water_are_no_impacts(name: str) -> None:
     assert not _impacts_of(AT_REST[name], drive("parked"), 40)
@@ -133,6 +135,7 @@ def _impacts_of(jolt: Jolt, there: Drive, count: int) -> list[MotionEvent]:
     return found
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("gyro", [True, False])
 def test_a_device_that_falls_off_is_no_impact(gyro: bool) -> None:
     there = drive("parked", gyro=gyro)
@@ -141,6 +144,7 @@ def test_a_device_that_falls_off_is_no_impact(gyro: bool) -> None:
         assert not told(samples, there.truth.q_vs, EventKind.IMPACT)
 
 
+@pytest.mark.compiled
 def test_a_device_turned_in_hand_tells_nothing() -> None:
     there, q_vs = drive("parked"), drive("parked").truth.q_vs
     silent = sum(not told(handle(there.samples, 8.0, np.random.default_rng(seed)), q_vs) for seed in range(20))
@@ -169,6 +173,7 @@ def test_manoeuvres_are_told_where_they_are_harsh() -> None:
         EventKind.HARSH_CORNERING: (np.abs(left), DEFAULT.harsh_cornering),
     }
     assert {event.kind for event in events} == set(signal)
+    assert min(event.start for event in events) > DEFAULT.harsh_settling
     for event in events:
         values, threshold = signal[event.kind]
         there = values[(drive_.t > event.start - 0.3) & (drive_.t < event.start + event.duration + 0.3)]
@@ -201,7 +206,7 @@ def test_pieces_tell_what_the_whole_tells() -> None:
     jolts = [(float(t), pothole(100.0, rng)) for t in np.arange(12, 190, 9.7)]
     samples = add(drive_.samples, drive_.q_vs, jolts)
     state, whole = advance(DEFAULT, initial_state(), drive_.q_vs, samples)
-    assert len(whole) > 2
+    assert len(whole) > 1
     for count in (1, 7, 300):
         cuts = sorted(rng.choice(len(samples), count, replace=False).tolist())
         there, pieces = _in_pieces(samples, drive_.q_vs, cuts)
@@ -280,3 +285,12 @@ def test_the_mounting_is_used() -> None:
     turned = quaternion.multiply(quaternion.from_rotation_vector(np.array([0, 0, math.pi / 2])), q_vs)
     (right,), (wrong,) = (told(samples, q, EventKind.IMPACT) for q in (q_vs, turned))
     assert angle(wrong.direction, right.direction + math.pi / 2) < 1
+
+
+def test_nothing_harsh_is_told_before_the_slope_is_known() -> None:
+    there = drive("city")
+    push = np.zeros((200, 6))
+    push[:, 0] = 6.0
+    early, late = (add(there.samples, there.truth.q_vs, [(t, push)]) for t in (1.0, 14.0))
+    kinds = [[event.kind for event in told(samples, there.truth.q_vs)] for samples in (early, late)]
+    assert kinds == [[], [EventKind.HARSH_ACCELERATION]]
