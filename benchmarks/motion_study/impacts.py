@@ -119,18 +119,23 @@ of the speeds; speed times change of the course) does not explain, averaged over
 - **Impacts**: a pulse on the plan, from the full band. It has to be larger than anything tyres can do, both in all and
   over the acceleration just before it (so that braking hard adds nothing), to change the velocity while it is so, to
   point one way (doors, rough roads and mounts that ring swing back), to last (knocks are short) and to be horizontal
-  rather than vertical (kerbs, potholes, humps). The direction is that of the change of the velocity. Where an axis is at
-  the end of its range, the direction is the one from which a push explains all readings best, those at the end of the
-  range being lower bounds; the peak is then a lower bound too.
+  rather than vertical (kerbs, potholes, humps). The direction is that of the change of the velocity. Where an axis is
+  at the end of its range, the direction is the one from which a push explains all readings best, those at the end of
+  the range being lower bounds; the peak is then a lower bound too.
 - **A device in hand**: while it turns out of the level (gyroscope), or gravity is not where it was, nothing is told.
-  An impact is therefore told {DEFAULT.impact_wait:.0f} s after the pulse, but at once when the samples end: a device that
-  was crashed may send no more. The fixes are not asked whether the speed changed: the least impacts change it by little
-  more than a receiver errs, and the late fixes of a second would have to be waited for.
+  An impact is therefore told {DEFAULT.impact_wait:.0f} s after the pulse, but at once when the samples end: a device
+  that was crashed may send no more. The fixes are not asked whether the speed changed: the least impacts change it by
+  little more than a receiver errs, and the late fixes of a second would have to be waited for.
 
 Worth keeping about an impact: {SECONDS_BEFORE:.0f} s before and {SECONDS_AFTER:.0f} s after it. The state between two
 uploads takes {LAYOUT.itemsize} bytes.
 
-{table(["threshold", "value", "unit", "meaning"], [[f"`{x.name}`", f"{x.value:.4g}", x.unit, x.meaning] for x in thresholds(DEFAULT)])}"""
+{_threshold_table()}"""
+
+
+def _threshold_table() -> str:
+    rows = [[f"`{x.name}`", f"{x.value:.4g}", x.unit, x.meaning] for x in thresholds(DEFAULT)]
+    return table(["threshold", "value", "unit", "meaning"], rows)
 
 
 def _measured(result: Json) -> str:
@@ -139,8 +144,8 @@ def _measured(result: Json) -> str:
 {target_table(targets(result))}
 
 Simulated crashes (`core/simulation_events.py`): pulses as a haversine, half-sine or triangle of 3 to 40 g over 60 to
-150 ms that change the velocity by 2 to 70 km/h, from any side, half of them oblique and beside the centre of gravity, so
-that the vehicle spins; the structure rings with 5 to 30 % of the peak at 30 to 90 Hz; the vehicle slides to rest. In
+150 ms that change the velocity by 2 to 70 km/h, from any side, half of them oblique and beside the centre of gravity,
+so that the vehicle spins; the structure rings with 5 to 30 % of the peak at 30 to 90 Hz; the vehicle slides to rest. In
 towns, hills, on motorways and parked, in any mounting, which is known to 1° per axis. Errors of the direction in
 degrees, of the found ones; ratios of the medians.
 
@@ -245,14 +250,14 @@ def _ordinary_table(result: Json) -> str:
 def _limits() -> str:
     return """### Limits
 
-- The direction is that of the device's place. A vehicle that is hit beside its centre of gravity spins, and a device far
-  from the centre is pushed sideways by that: most of the error that is left.
+- The direction is that of the device's place. A vehicle that is hit beside its centre of gravity spins, and a device
+  far from the centre is pushed sideways by that: most of the error that is left.
 - At the end of the range the change of the velocity and the duration are what was read: too small. Shorter ranges than
   16 g spoil the direction of heavy crashes too.
 - A vehicle hit so lightly that it is pushed by less than the thresholds say is not told from one whose door was
   slammed.
-- A device that is pulled off its place with a jerk of a few g looks like a light hit until it turns; without a gyroscope
-  it has to turn far.
+- A device that is pulled off its place with a jerk of a few g looks like a light hit until it turns; without a
+  gyroscope it has to turn far.
 - A roll-over is told as the impact it begins with, if any.
 - Receivers that give no speed tell no speed before an event, and slopes are then averaged over the longer time.
 - Pulses, tyres and structures are simulated: no recorded crash was at hand. Recorded ordinary drives are looked at in
