@@ -182,20 +182,22 @@ def _break_off(p, r, handled, interval, out, count):
 def _pulse(p, r, turn, t, dt, ax, ay, ex, ey, ez, f0, f1, f2, handled, interval, out, count):
     """Follow a pulse on the plan from its first sample to the end of the time after it in which it may be dismissed."""
     total, size = math.sqrt(ax * ax + ay * ay), math.sqrt(ex * ex + ey * ey)
+    least = min(total, size)  # tyres do neither
+    if least > p["impact_level"] and t - r["pulse_end"] <= p["impact_back_time"]:
+        _swing_back(r, ex, ey)
     if r["phase"] == AFTER:
         if handled > t and not r["told"]:
             r["phase"] = IDLE
         elif t - r["pulse_end"] > p["impact_wait"]:
-            if not r["told"]:
-                count = _tell_impact(r, r["pulse_end"], out, count)
-            r["quiet_end"] = t + p["impact_refractory"]
+            if r["told"] or _is_impact(p, r, handled, interval):
+                r["quiet_end"] = t + p["impact_refractory"]
+            count = _tell_at_once(p, r, handled, interval, out, count)
             r["phase"] = IDLE
         return count
     if r["phase"] == IDLE:
         if t < r["quiet_end"] or handled > t:
             return count
         _begin_pulse(p, r, t, dt)
-    least = min(total, size)  # tyres do neither
     _gather(r, turn, dt, ax, ay, ex, ey, ez, f0, f1, f2)
     if least > p["impact_level"]:
         r["push"][0] += ex * dt
@@ -209,6 +211,14 @@ def _pulse(p, r, turn, t, dt, ax, ay, ex, ey, ez, f0, f1, f2, handled, interval,
     if t - r["pulse_end"] > p["pulse_pause"] or t - r["peak_t"] > p["pulse_longest"]:
         r["phase"] = AFTER if r["told"] or _is_impact(p, r, handled, interval) else IDLE
     return count
+
+
+@njit(cache=True, nogil=True)
+def _swing_back(r, ex, ey):
+    """Keep the largest acceleration against the push so far: what rings swings back, what was hit does not."""
+    push = math.hypot(r["push"][0], r["push"][1])
+    if push > 0.0:
+        r["back"] = max(r["back"], -(ex * r["push"][0] + ey * r["push"][1]) / push)
 
 
 @njit(cache=True, nogil=True)
@@ -309,6 +319,7 @@ def _is_impact(p, r, handled, interval):
         and push >= p["impact_one_way"] * r["path"]
         and (r["clipped"] >= p["impact_shortest"] or r["up"] <= p["impact_up"] * r["excess"])
         and (r["clipped"] >= p["impact_shortest"] or abs(r["change_up"]) <= p["impact_up_velocity"] * push)
+        and (r["excess"] > p["impact_sure"] or r["back"] <= p["impact_back"] * r["excess"])
         and not handled > r["pulse_start"]
     )
 

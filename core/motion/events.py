@@ -94,6 +94,11 @@ class EventParameters:
     impact_one_way: float = threshold(
         0.6, "", "Impact: change of the velocity over the integral of the acceleration's size; shaking has little."
     )
+    impact_back: float = threshold(
+        0.3, "", "Impact: largest acceleration back that tyres cannot do, over the peak; doors swing back."
+    )
+    impact_back_time: float = threshold(0.08, "s", "It is looked for so long after the pulse.")
+    impact_sure: float = threshold(60.0, "m/s2", "It is not looked for after pulses larger than any door makes.")
     impact_shortest: float = threshold(
         0.012, "s", "Impact: that change over the peak; knocks at the device are shorter."
     )
@@ -169,6 +174,7 @@ LAYOUT = np.dtype(
         ("change", "f8", (2,)),  # m/s, integral of the acceleration
         ("push", "f8", (2,)),  # m/s, integral over the base where it is more than tyres can do
         ("change_up", "f8"),  # m/s
+        ("back", "f8"),  # m/s2, largest against the push
         ("path", "f8"),  # m/s, integral of its size
         ("costs", "f8", (_events_kernel.COURSES,)),  # m2/s3, of directions of the push
         ("range_end", "f8"),  # m/s2, end of the accelerometer's range, 0 = not seen
