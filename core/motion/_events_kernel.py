@@ -47,7 +47,7 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
             gx, gy, reference_end = r["reference"][0], r["reference"][1], r["reference_end"]
             k += 1
         dt = t - last
-        if dt == 0.0:
+        if dt <= 0.0:
             i += 1
             continue
         f0, f1, f2 = fs[i, 0], fs[i, 1], fs[i, 2]

@@ -38,7 +38,7 @@ __all__ = [
 SECONDS_BEFORE, SECONDS_AFTER = 10.0, 10.0
 """s of readings about an impact that are worth keeping"""
 ROWS = 64
-"""events the kernel tells before it has to be called again"""
+"""places for events in a call of the kernel, which is called again when they are nearly full"""
 
 
 class EventKind(StrEnum):

@@ -214,6 +214,24 @@ def test_pieces_tell_what_the_whole_tells() -> None:
         assert encode(there) == encode(state)
 
 
+def test_no_event_is_lost_when_there_are_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    drive_, rng = manoeuvres(13, 100.0), np.random.default_rng(2)
+    samples = add(drive_.samples, drive_.q_vs, [(float(t), pothole(100.0, rng)) for t in np.arange(12, 95, 3.1)])
+    whole = told(samples, drive_.q_vs)
+    monkeypatch.setattr("core.motion.events.ROWS", 8)
+    assert len(whole) > 8
+    assert [repr(event) for event in told(samples, drive_.q_vs)] == [repr(event) for event in whole]
+
+
+def test_samples_that_come_late_are_left_out() -> None:
+    samples, q_vs = crashed(HIT)
+    state, _ = advance(DEFAULT, initial_state(), q_vs, samples)
+    again, events = advance(DEFAULT, state, q_vs, samples.slice(0, 3000))
+    assert not events
+    assert again["t"] == state["t"]
+    assert again["offset"].tolist() == state["offset"].tolist()
+
+
 @pytest.mark.parametrize("milliseconds", [60, 90, 150, 400, 1500])
 def test_an_impact_at_the_end_of_the_samples_is_told_at_once_and_once(milliseconds: int) -> None:
     samples, q_vs = crashed(HIT)
