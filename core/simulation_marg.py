@@ -22,7 +22,7 @@ from core.simulation_motion import GRAVITY
 
 Floats = NDArray[np.float64]
 
-STILL = 3.0
+STILL = 4.0
 """s at the start before it is taken up"""
 TAKE_UP = 2.0
 """s from stillness to full motion"""

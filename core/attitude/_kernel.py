@@ -229,8 +229,9 @@ def start_covariance(method, p, s):
         for j in range(7):
             if i < 4 or j < 4 or not known:
                 cov[i, j] = 0.0
-    if method == LINEAR:
+    if method in (LINEAR, MADGWICK):
         cov[0, 0] = cov[1, 1] = p.start_tilt * p.start_tilt
+        cov[2, 2] = p.start_heading * p.start_heading
     else:
         for axis in range(3):
             sigma = 0.5 * (p.start_heading if axis == 2 else p.start_tilt)
@@ -533,6 +534,7 @@ def quest_ekf(p, s, scratch, force, usable, seen):
     if usable:
         h, measured, error = scratch[5], scratch[0], scratch[1]
         tilt, heading = tilt_variance(p, s, force), heading_variance(p, s)
+        heading += tilt * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # a tilt turns the field aside
         if quest(p, s, scratch, force, seen, tilt, heading, measured):
             into_level(s.q, measured[1:4], error)  # the measured quaternion in the axes its noise is diagonal in
             for axis in range(3 if seen else 2):
@@ -622,22 +624,24 @@ def gradient(q, d, v, out):
 def madgwick(p, s, scratch, force, usable, seen):
     """Filter of 003 4.2: a step down the gradient of each vector (46-48), its mean the gyroscope's bias (50-52).
 
-    Near the goal the step is in proportion to the gradient, which (48) would make a tremble; and of the field's gradient
-    only the part about the vertical counts, so that a disturbed field does not tilt the attitude.
+    Near the goal the step is a share of the gradient: `gains` gives it, where (48) would tremble; far away it is no faster
+    than `beta`. Of the field's gradient only the part about the vertical counts: a disturbed field shall not tilt.
     """
     step, d, v = scratch[0], scratch[1], scratch[2]
-    slope, rate, sensor_rate = scratch[3], scratch[4], scratch[5]
-    rate[0] = rate[1] = rate[2] = 0.0
-    hurry = 1.0 + p.start_hurry * math.exp(-s.age / p.start_time)
+    slope, drift = scratch[3], scratch[4]
+    for i in range(3):
+        step[1 + i] = drift[i] = 0.0
+    tilt_gain, tilt_drift = gains(p, s.covariance, 0, s.pending, tilt_variance(p, s, force), 0.0, usable)
+    heading_gain, heading_drift = gains(p, s.covariance, 2, s.pending, heading_variance(p, s), 0.0, seen)
     if usable:
-        calm = 1.0 / (1.0 + p.calm_spread * s.spread / (GRAVITY * GRAVITY))
         d[0], d[1], d[2] = 0.0, 0.0, 1.0
         for i in range(3):
             v[i] = s.mean_force[i] / force
         gradient(s.q, d, v, slope)
         for axis in range(2):
-            rate[axis] = about(s.q, slope, axis)
-        limit(rate, p.step_limit, hurry * calm * p.beta)
+            error = 0.5 * about(s.q, slope, axis)
+            step[1 + axis] = -limited(tilt_gain * error, p.beta * s.pending)
+            drift[axis] = tilt_drift * limited(error, p.most_error)
     if seen:
         into_level(s.q, s.field, v)
         size = math.sqrt(dot(s.field, s.field))
@@ -646,14 +650,36 @@ def madgwick(p, s, scratch, force, usable, seen):
         for i in range(3):
             v[i] = s.field[i] / size
         gradient(s.q, d, v, slope)
-        turning = about(s.q, slope, 2) / max(horizontal * horizontal, LEAST)
-        rate[2] = hurry * p.beta_field * turning / max(abs(turning), p.step_limit)
-    rotation(-2 * rate[0] * s.pending, -2 * rate[1] * s.pending, -2 * rate[2] * s.pending, step)
-    into_sensor(s.q, rate, sensor_rate)
+        error = 0.5 * about(s.q, slope, 2) / max(horizontal * horizontal, LEAST)
+        step[3] = -limited(heading_gain * error, p.beta * s.pending)
+        drift[2] = heading_drift * limited(error, p.most_error)
+    rotation(step[1], step[2], step[3], step)
+    into_sensor(s.q, drift, drift)
     product(step, s.q, s.q)
     normalise(s.q)
     for i in range(3):
-        s.bias[i] += p.zeta * 2 * sensor_rate[i] * s.pending
+        s.bias[i] -= drift[i]
+
+
+@njit(cache=True, nogil=True)
+def gains(p, cov, i, T, variance, square, seen):
+    """Kalman gains of an angle and of the bias of its rate (001 eq. 6.10, 6.2-6.8) for a measurement of the angle.
+
+    `cov` is taken over the time `T` and past the measurement, whose innovation has the square `square`.
+    """
+    b = 4 + i
+    crossing = cov[i, b] - T * cov[b, b]
+    cov[i, i] += T * (T * cov[b, b] - 2 * cov[i, b] + p.rate_noise * p.rate_noise)
+    cov[i, b] = crossing
+    cov[b, b] += p.bias_walk * p.bias_walk * T
+    if not seen:
+        return 0.0, 0.0
+    S = max(cov[i, i] + variance, square / p.gate)
+    gain, bias_gain = cov[i, i] / S, crossing / S
+    cov[b, b] -= bias_gain * crossing
+    cov[i, b] -= gain * crossing
+    cov[i, i] -= gain * cov[i, i]
+    return gain, bias_gain
 
 
 @njit(cache=True, nogil=True)
@@ -664,11 +690,9 @@ def about(q, slope, axis):
 
 
 @njit(cache=True, nogil=True)
-def limit(v, least, size):
-    """Scale a vector to `size`, where it is shorter than `least` in proportion to its length."""
-    scale = size / max(math.sqrt(dot(v, v)), least)
-    for i in range(3):
-        v[i] *= scale
+def limited(value, most):
+    """Give the value, no larger than `most` either way."""
+    return min(max(value, -most), most)
 
 
 @njit(cache=True, nogil=True)
@@ -689,19 +713,10 @@ def linear(p, s, force, usable):
     cov, f = s.covariance, s.mean_force
     angle = (math.atan2(f[1], f[2]), math.atan2(-f[0], math.hypot(f[1], f[2])))
     for i in range(2):
-        T, b = s.pending, 4 + i
-        crossing = cov[i, b] - T * cov[b, b]
-        cov[i, i] += T * (T * cov[b, b] - 2 * cov[i, b] + p.rate_noise * p.rate_noise)
-        cov[i, b] = crossing
-        cov[b, b] += p.bias_walk * p.bias_walk * T
-        if usable:
-            innovation = wrap(angle[i] - s.angles[i])
-            S = max(cov[i, i] + tilt_variance(p, s, force), innovation * innovation / p.gate)
-            gain, bias_gain = cov[i, i] / S, crossing / S
-            s.angles[i] += gain * innovation
-            s.bias[i] += bias_gain * innovation
-            cov[b, b] -= bias_gain * crossing
-            cov[i, b] -= gain * crossing
-            cov[i, i] -= gain * cov[i, i]
-        s.sigma[i] = math.sqrt(max(cov[i, i], 0.0))
+        innovation = wrap(angle[i] - s.angles[i])
+        square = innovation * innovation
+        gain, bias_gain = gains(p, cov, i, s.pending, tilt_variance(p, s, force), square, usable)
+        s.angles[i] += gain * innovation
+        s.bias[i] += bias_gain * innovation
+        s.sigma[i] = math.sqrt(cov[i, i])
     from_angles(s.angles[0], s.angles[1], s.angles[2], s.q)

@@ -21,29 +21,29 @@ class Parameters:
     # Specific force
     force_time: float = 1.0
     """s over which it is averaged, twice"""
-    spread_time: float = 3.0
+    spread_time: float = 5.0
     """s over which its spread is averaged"""
     least_force: float = 0.5
     """of gravity: below it tells nothing of the vertical, as in free fall"""
     most_force: float = 2.0
     """of gravity"""
-    tilt_noise: float = radians(0.3)
+    tilt_noise: float = radians(0.1)
     """rad sqrt(s), of its average's direction at rest"""
-    shake_noise: float = 0.3
+    shake_noise: float = 0.12
     """sqrt(s), of the same for each g of spread"""
-    excess_noise: float = 2.0
+    excess_noise: float = 5.0
     """sqrt(s), of the same for each g its size is off"""
 
     # Magnetic field
-    field_time: float = 0.5
+    field_time: float = 0.05
     """s over which it is averaged"""
-    field_moment: float = 0.1
+    field_moment: float = 0.05
     """s over which it is averaged to judge it"""
     field_noise: float = radians(1.0)
     """rad sqrt(s), of its average's direction"""
-    field_tolerance: float = 0.08
+    field_tolerance: float = 0.05
     """of its strength: more is a disturbance"""
-    dip_tolerance: float = 0.1
+    dip_tolerance: float = 0.06
     """sine of the angle below the horizontal: more is a disturbance"""
     field_calm: float = 0.5
     """s without disturbance before it is trusted again"""
@@ -55,38 +55,28 @@ class Parameters:
     """of its strength: below it tells nothing of the heading, as near the magnetic poles"""
 
     # Gyroscope
-    rate_noise: float = radians(0.02)
+    rate_noise: float = radians(0.1)
     """rad/sqrt(s)"""
-    bias_walk: float = radians(0.003)
+    bias_walk: float = radians(0.001)
     """rad/s per sqrt(s)"""
     most_bias: float = radians(10.0)
     """rad/s"""
 
     # Kalman filters
-    start_tilt: float = radians(5.0)
+    start_tilt: float = radians(1.5)
     """rad, 1 sigma of a first attitude"""
-    start_heading: float = radians(10.0)
+    start_heading: float = radians(5.0)
     """rad, the same"""
     start_bias: float = radians(1.0)
     """rad/s, 1 sigma"""
-    gate: float = 9.0
+    gate: float = 6.0
     """squares of innovations, in their variances, beyond which they are less likely (001 eq. 6.5) than believed"""
 
     # Madgwick
-    beta: float = radians(1.0)
-    """rad/s, half of it the fastest correction of the tilt (003 eq. 43)"""
-    beta_field: float = radians(1.0)
-    """rad/s, the same of the heading"""
-    zeta: float = 0.05
-    """1/s, of the bias (003 eq. 51)"""
-    step_limit: float = 0.1
-    """rad, error above which a correction is no faster"""
-    calm_spread: float = 10.0
-    """by how much shaking, in squares of g, slows the correction of the tilt"""
-    start_hurry: float = 10.0
-    """how many times faster corrections are at the start"""
-    start_time: float = 1.0
-    """s after which they are no longer"""
+    beta: float = radians(5.0)
+    """rad/s, fastest correction; twice the rate of the quaternion (003 eq. 43)"""
+    most_error: float = radians(5.0)
+    """rad, an error of an angle beyond it tells no more about the bias"""
 
     # QUEST and Kalman filter
     rate_lag: float = 0.5
