@@ -290,7 +290,8 @@ def average_force(p, s, f, dt):
         square += change * change
         s.force[i] += gain * change
         s.mean_force[i] += gain * (s.force[i] - s.mean_force[i])
-    s.spread += dt / (p.spread_time + dt) * (square - s.spread)
+    time = p.spread_rise if square > s.spread else p.spread_time  # shaking is believed at once, calm only after a while
+    s.spread += dt / (time + dt) * (square - s.spread)
 
 
 @njit(cache=True, nogil=True)
@@ -462,19 +463,17 @@ def finish(s):
 
 
 @njit(cache=True, nogil=True)
-def heading_row(q, h):
-    """Jacobian of a rotation about the vertical."""
-    u = level_axis(q, 2)
-    for i in range(4):
-        h[i] = 2.0 * u[i]
-    h[4] = h[5] = h[6] = 0.0
+def field_row(s, field, h):
+    """Heading error that the averaged field tells of, and its Jacobian: all that (001 eq. 6.21) leaves of (6.22-6.24).
 
-
-@njit(cache=True, nogil=True)
-def field_heading(s, scratch):
-    """Rotation about the vertical that turns the averaged field to north: all that (001 eq. 6.21) leaves of it."""
-    field = scratch[0]
+    What is left is the angle from north of the field's horizontal part, and a tilt about north changes it too.
+    """
     into_level(s.q, s.field, field)
+    slope = field[2] / math.hypot(field[0], field[1])
+    up, north = level_axis(s.q, 2), level_axis(s.q, 1)
+    for i in range(4):
+        h[i] = 2.0 * (up[i] - slope * north[i])
+    h[4] = h[5] = h[6] = 0.0
     return math.atan2(field[0], field[1])
 
 
@@ -512,8 +511,8 @@ def ekf(p, s, scratch, force, usable, seen):
             update(p, s, h, s.mean_force[row] / force - predicted, variance, scratch)
         normalise(s.q)
     if seen:
-        heading_row(s.q, h)
-        update(p, s, h, field_heading(s, scratch), heading_variance(p, s), scratch)
+        innovation = field_row(s, scratch[0], h)
+        update(p, s, h, innovation, heading_variance(p, s), scratch)
     finish(s)
 
 
@@ -628,18 +627,20 @@ def madgwick(p, s, scratch, force, usable, seen):
     than `beta`. Of the field's gradient only the part about the vertical counts: a disturbed field shall not tilt.
     """
     step, d, v = scratch[0], scratch[1], scratch[2]
-    slope, drift = scratch[3], scratch[4]
+    downhill, drift = scratch[3], scratch[4]
     for i in range(3):
         step[1 + i] = drift[i] = 0.0
     tilt_gain, tilt_drift = gains(p, s.covariance, 0, s.pending, tilt_variance(p, s, force), 0.0, usable)
-    heading_gain, heading_drift = gains(p, s.covariance, 2, s.pending, heading_variance(p, s), 0.0, seen)
+    slope = s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)
+    variance = heading_variance(p, s) + s.covariance[0, 0] * slope
+    heading_gain, heading_drift = gains(p, s.covariance, 2, s.pending, variance, 0.0, seen)
     if usable:
         d[0], d[1], d[2] = 0.0, 0.0, 1.0
         for i in range(3):
             v[i] = s.mean_force[i] / force
-        gradient(s.q, d, v, slope)
+        gradient(s.q, d, v, downhill)
         for axis in range(2):
-            error = 0.5 * about(s.q, slope, axis)
+            error = 0.5 * about(s.q, downhill, axis)
             step[1 + axis] = -limited(tilt_gain * error, p.beta * s.pending)
             drift[axis] = tilt_drift * limited(error, p.most_error)
     if seen:
@@ -649,8 +650,8 @@ def madgwick(p, s, scratch, force, usable, seen):
         d[0], d[1], d[2] = 0.0, horizontal, v[2] / size  # (49): a reference of the inclination that is measured
         for i in range(3):
             v[i] = s.field[i] / size
-        gradient(s.q, d, v, slope)
-        error = 0.5 * about(s.q, slope, 2) / max(horizontal * horizontal, LEAST)
+        gradient(s.q, d, v, downhill)
+        error = 0.5 * about(s.q, downhill, 2) / max(horizontal * horizontal, LEAST)
         step[3] = -limited(heading_gain * error, p.beta * s.pending)
         drift[2] = heading_drift * limited(error, p.most_error)
     rotation(step[1], step[2], step[3], step)
@@ -669,7 +670,7 @@ def gains(p, cov, i, T, variance, square, seen):
     """
     b = 4 + i
     crossing = cov[i, b] - T * cov[b, b]
-    cov[i, i] += T * (T * cov[b, b] - 2 * cov[i, b] + p.rate_noise * p.rate_noise)
+    cov[i, i] += T * (T * cov[b, b] - 2 * cov[i, b] + p.angle_noise * p.angle_noise)
     cov[i, b] = crossing
     cov[b, b] += p.bias_walk * p.bias_walk * T
     if not seen:

@@ -22,16 +22,18 @@ class Parameters:
     force_time: float = 1.0
     """s over which it is averaged, twice"""
     spread_time: float = 5.0
-    """s over which its spread is averaged"""
+    """s over which its spread is averaged where it falls"""
+    spread_rise: float = 0.3
+    """s, the same where it rises"""
     least_force: float = 0.5
     """of gravity: below it tells nothing of the vertical, as in free fall"""
     most_force: float = 2.0
     """of gravity"""
     tilt_noise: float = radians(0.1)
     """rad sqrt(s), of its average's direction at rest"""
-    shake_noise: float = 0.12
+    shake_noise: float = 0.06
     """sqrt(s), of the same for each g of spread"""
-    excess_noise: float = 5.0
+    excess_noise: float = 3.0
     """sqrt(s), of the same for each g its size is off"""
 
     # Magnetic field
@@ -39,7 +41,7 @@ class Parameters:
     """s over which it is averaged"""
     field_moment: float = 0.05
     """s over which it is averaged to judge it"""
-    field_noise: float = radians(1.0)
+    field_noise: float = radians(0.4)
     """rad sqrt(s), of its average's direction"""
     field_tolerance: float = 0.05
     """of its strength: more is a disturbance"""
@@ -57,6 +59,8 @@ class Parameters:
     # Gyroscope
     rate_noise: float = radians(0.1)
     """rad/sqrt(s)"""
+    angle_noise: float = radians(0.015)
+    """rad/sqrt(s), the same for the filters that follow one angle at a time"""
     bias_walk: float = radians(0.001)
     """rad/s per sqrt(s)"""
     most_bias: float = radians(10.0)
@@ -73,9 +77,9 @@ class Parameters:
     """squares of innovations, in their variances, beyond which they are less likely (001 eq. 6.5) than believed"""
 
     # Madgwick
-    beta: float = radians(5.0)
+    beta: float = radians(10.0)
     """rad/s, fastest correction; twice the rate of the quaternion (003 eq. 43)"""
-    most_error: float = radians(5.0)
+    most_error: float = radians(1.0)
     """rad, an error of an angle beyond it tells no more about the bias"""
 
     # QUEST and Kalman filter
