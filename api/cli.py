@@ -87,6 +87,49 @@ def calibrate(
 
 
 @app.command()
+def attitude(
+    log: Annotated[Path, typer.Argument(help="Log of a device with a gyroscope.", show_default=False)],
+    filter_name: Annotated[
+        Literal["linear", "ekf", "madgwick", "quest-ekf", "gyro"],
+        typer.Option("--filter", help="How the sensors are put together; gyro integrates only."),
+    ] = "ekf",
+    log_format: LogFormat = None,
+    every: Annotated[float, typer.Option(min=0.001, help="Seconds of log time between lines with --json.")] = 1.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object on each line.")] = False,
+    plot: Annotated[
+        Path | None, typer.Option(help="File for a picture, .png, .svg or .pdf.", show_default=False)
+    ] = None,
+) -> None:
+    """Find a device's roll, pitch and heading through a log, from its own sensors.
+
+    Exit status 2 when the log cannot be read or has no gyroscope.
+    """
+    from api.commands import attitude as command
+    from api.formats.files import Format
+
+    command.run(log, log_format and Format(log_format), filter_name, every, as_json, plot)
+
+
+@app.command()
+def characterise(
+    log: Annotated[Path, typer.Argument(help="Log of a device that lay still.", show_default=False)],
+    log_format: LogFormat = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    plot: Annotated[
+        Path | None, typer.Option(help="File for a picture, .png, .svg or .pdf.", show_default=False)
+    ] = None,
+) -> None:
+    """Find means, drifts and noises of a device's sensors, with their Allan deviation.
+
+    Exit status 2 when the log cannot be read or is too short.
+    """
+    from api.commands import characterise as command
+    from api.formats.files import Format
+
+    command.run(log, log_format and Format(log_format), as_json, plot)
+
+
+@app.command()
 def simulate(
     out: Annotated[Path, typer.Argument(help="Log to write, .csv or .csv.gz.", show_default=False)],
     route: Annotated[

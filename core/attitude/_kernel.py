@@ -24,6 +24,9 @@ SEA_LEVEL_PRESSURE, SCALE_HEIGHT, LAPSE_EXPONENT = 101325.0, 44330.77, 0.190263
 GYRO, LINEAR, EKF, MADGWICK, QUEST_EKF = range(5)
 """The filters."""
 
+SCRATCH = (20, 7)
+"""Shape of the memory for what is in between."""
+
 STATE = np.dtype(
     [
         ("t", "f8"),  # s of the last sample, nan before the first
@@ -389,8 +392,14 @@ def tilt_variance(p, s, force):
 
 
 @njit(cache=True, nogil=True)
-def update(p, s, h, innovation, variance, scratch):
-    """Take in a scalar measurement h x (001 eq. 6.4-6.8); one less likely (6.5) than the gate counts as at the gate."""
+def doubted(p, variance, square):
+    """Variance of a measurement by its likelihood (001 eq. 6.5): one beyond the gate, in squares, has what puts it there."""
+    return max(variance, square / p.gate)
+
+
+@njit(cache=True, nogil=True)
+def update(s, h, innovation, variance, scratch):
+    """Take in a scalar measurement h x (001 eq. 6.4-6.8)."""
     cov, gain = s.covariance, scratch[6]
     S = variance
     for i in range(7):
@@ -399,7 +408,6 @@ def update(p, s, h, innovation, variance, scratch):
             total += cov[i, j] * h[j]
         gain[i] = total
         S += h[i] * total
-    S = max(S, innovation * innovation / p.gate)
     for i in range(4):
         s.q[i] += gain[i] / S * innovation
     for i in range(3):
@@ -487,7 +495,7 @@ def heading_variance(p, s):
 
 
 @njit(cache=True, nogil=True)
-def gravity_rows(q, row, h):
+def gravity_row(q, row, h):
     """Predicted direction of the specific force (001 eq. 6.18) and its Jacobian (6.24), a row of both."""
     h[4] = h[5] = h[6] = 0.0
     if row == 0:
@@ -505,14 +513,17 @@ def ekf(p, s, scratch, force, usable, seen):
     """Extended Kalman filter of 001 6.3: quaternion and gyroscope bias, a component of the measurement at a time."""
     h = scratch[5]
     if usable:
-        variance = tilt_variance(p, s, force)
+        square = 0.0
         for row in range(3):
-            predicted = gravity_rows(s.q, row, h)
-            update(p, s, h, s.mean_force[row] / force - predicted, variance, scratch)
+            square += (s.mean_force[row] / force - gravity_row(s.q, row, h)) ** 2
+        variance = doubted(p, tilt_variance(p, s, force), square)
+        for row in range(3):
+            predicted = gravity_row(s.q, row, h)
+            update(s, h, s.mean_force[row] / force - predicted, variance, scratch)
         normalise(s.q)
     if seen:
         innovation = field_row(s, scratch[0], h)
-        update(p, s, h, innovation, heading_variance(p, s), scratch)
+        update(s, h, innovation, doubted(p, heading_variance(p, s), innovation * innovation), scratch)
     finish(s)
 
 
@@ -536,12 +547,14 @@ def quest_ekf(p, s, scratch, force, usable, seen):
         heading += tilt * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # a tilt turns the field aside
         if quest(p, s, scratch, force, seen, tilt, heading, measured):
             into_level(s.q, measured[1:4], error)  # the measured quaternion in the axes its noise is diagonal in
+            tilt = doubted(p, tilt, 4.0 * (error[0] * error[0] + error[1] * error[1]))
+            heading = doubted(p, heading, 4.0 * error[2] * error[2])
             for axis in range(3 if seen else 2):
                 u = level_axis(s.q, axis)
                 for i in range(4):
                     h[i] = 2.0 * u[i]
                 h[4] = h[5] = h[6] = 0.0
-                update(p, s, h, 2.0 * error[axis], heading if axis == 2 else tilt, scratch)
+                update(s, h, 2.0 * error[axis], heading if axis == 2 else tilt, scratch)
     finish(s)
 
 
@@ -675,7 +688,7 @@ def gains(p, cov, i, T, variance, square, seen):
     cov[b, b] += p.bias_walk * p.bias_walk * T
     if not seen:
         return 0.0, 0.0
-    S = max(cov[i, i] + variance, square / p.gate)
+    S = cov[i, i] + doubted(p, variance, square)
     gain, bias_gain = cov[i, i] / S, crossing / S
     cov[b, b] -= bias_gain * crossing
     cov[i, b] -= gain * crossing

@@ -1,6 +1,6 @@
 """What is tuned of the attitude filters: unit and meaning."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from math import radians
 
@@ -19,21 +19,21 @@ class Parameters:
     """s without a reading of the gyroscope after which the attitude is found anew"""
 
     # Specific force
-    force_time: float = 1.0
+    force_time: float = 0.7
     """s over which it is averaged, twice"""
-    spread_time: float = 5.0
+    spread_time: float = 4.0
     """s over which its spread is averaged where it falls"""
-    spread_rise: float = 0.3
+    spread_rise: float = 0.1
     """s, the same where it rises"""
     least_force: float = 0.5
     """of gravity: below it tells nothing of the vertical, as in free fall"""
     most_force: float = 2.0
     """of gravity"""
-    tilt_noise: float = radians(0.1)
+    tilt_noise: float = radians(0.2)
     """rad sqrt(s), of its average's direction at rest"""
-    shake_noise: float = 0.06
+    shake_noise: float = 0.12
     """sqrt(s), of the same for each g of spread"""
-    excess_noise: float = 3.0
+    excess_noise: float = 1.5
     """sqrt(s), of the same for each g its size is off"""
 
     # Magnetic field
@@ -41,7 +41,7 @@ class Parameters:
     """s over which it is averaged"""
     field_moment: float = 0.05
     """s over which it is averaged to judge it"""
-    field_noise: float = radians(0.4)
+    field_noise: float = radians(0.15)
     """rad sqrt(s), of its average's direction"""
     field_tolerance: float = 0.05
     """of its strength: more is a disturbance"""
@@ -57,9 +57,9 @@ class Parameters:
     """of its strength: below it tells nothing of the heading, as near the magnetic poles"""
 
     # Gyroscope
-    rate_noise: float = radians(0.1)
+    rate_noise: float = radians(0.03)
     """rad/sqrt(s)"""
-    angle_noise: float = radians(0.015)
+    angle_noise: float = radians(0.05)
     """rad/sqrt(s), the same for the filters that follow one angle at a time"""
     bias_walk: float = radians(0.001)
     """rad/s per sqrt(s)"""
@@ -67,13 +67,13 @@ class Parameters:
     """rad/s"""
 
     # Kalman filters
-    start_tilt: float = radians(1.5)
+    start_tilt: float = radians(20.0)
     """rad, 1 sigma of a first attitude"""
-    start_heading: float = radians(5.0)
+    start_heading: float = radians(40.0)
     """rad, the same"""
-    start_bias: float = radians(1.0)
+    start_bias: float = radians(3.0)
     """rad/s, 1 sigma"""
-    gate: float = 6.0
+    gate: float = 0.2
     """squares of innovations, in their variances, beyond which they are less likely (001 eq. 6.5) than believed"""
 
     # Madgwick
@@ -98,6 +98,28 @@ class Parameters:
 
 
 DEFAULT = Parameters()
+MADGWICK = replace(
+    DEFAULT,
+    force_time=1.0,
+    spread_rise=0.5,
+    tilt_noise=radians(0.06),
+    shake_noise=0.06,
+    excess_noise=3.0,
+    field_noise=radians(0.4),
+    start_tilt=radians(3.0),
+    start_heading=radians(5.0),
+    start_bias=radians(1.0),
+)
+"""Its two angles know nothing of each other, so that more is left to chance."""
+QUEST_EKF = replace(
+    DEFAULT,
+    force_time=0.85,
+    tilt_noise=radians(0.35),
+    shake_noise=0.09,
+    excess_noise=3.0,
+    rate_noise=radians(0.04),
+    start_heading=radians(20.0),
+)
 
 
 @lru_cache(maxsize=32)
