@@ -168,7 +168,7 @@ def run(method, p, s, scratch, t, f, w, m, pressure, q_out, bias_out, altitude_o
             turn(method, p, s, dt, scratch)
             average_force(p, s, f[k], dt)
             if has_field:
-                average_field(p, s, m[k], dt)
+                average_field(method, p, s, m[k], dt)
             if s.pending >= p.correction_period:
                 correct(method, p, s, scratch)
         if has_pressure:
@@ -218,15 +218,14 @@ def start(method, p, s, f, m, scratch):
     s.mean_force[:] = f
     s.spread, s.age, s.pending = 0.0, 0.0, 0.0
     s.turned[0], s.turned[1], s.turned[2], s.turned[3] = 1.0, 0.0, 0.0, 0.0
-    if not s.started:
-        start_covariance(method, p, s)
+    start_covariance(method, p, s)
     s.started = True
 
 
 @njit(cache=True, nogil=True)
 def start_covariance(method, p, s):
     """Covariance of a first attitude; that of the bias is kept when there has been one."""
-    cov, q = s.covariance, s.q
+    cov = s.covariance
     known = cov[4, 4] > 0.0
     for i in range(7):
         for j in range(7):
@@ -236,15 +235,23 @@ def start_covariance(method, p, s):
         cov[0, 0] = cov[1, 1] = p.start_tilt * p.start_tilt
         cov[2, 2] = p.start_heading * p.start_heading
     else:
-        for axis in range(3):
-            sigma = 0.5 * (p.start_heading if axis == 2 else p.start_tilt)
-            u = level_axis(q, axis)
-            for i in range(4):
-                for j in range(4):
-                    cov[i, j] += sigma * sigma * u[i] * u[j]
+        add_variance(s, 0, p.start_tilt)
+        add_variance(s, 1, p.start_tilt)
+        add_variance(s, 2, p.start_heading)
+    if method in (EKF, QUEST_EKF):
+        finish(s)
     if not known:
         for i in range(4, 7):
             cov[i, i] = p.start_bias * p.start_bias
+
+
+@njit(cache=True, nogil=True)
+def add_variance(s, axis, sigma):
+    """Make a rotation about east, north or up less sure."""
+    u = level_axis(s.q, axis)
+    for i in range(4):
+        for j in range(4):
+            s.covariance[i, j] += 0.25 * sigma * sigma * u[i] * u[j]
 
 
 @njit(cache=True, nogil=True)
@@ -298,7 +305,7 @@ def average_force(p, s, f, dt):
 
 
 @njit(cache=True, nogil=True)
-def average_field(p, s, m, dt):
+def average_field(method, p, s, m, dt):
     """Average the magnetic field over `field_time` where its strength and dip are those of the Earth."""
     if not is_reading(m, MOST_FIELD):
         s.field_trust = 0.0
@@ -312,8 +319,9 @@ def average_field(p, s, m, dt):
         s.field_trust = 0.0
         return
     dip = -dot(s.field_now, s.mean_force) / (strength * force)
-    if s.field_strength == 0.0:
-        adopt_field(s, strength, dip)
+    if s.field_strength == 0.0 or s.age < p.reference_start:
+        s.field_strength, s.field_dip = strength, dip
+        s.field_trust += dt
     elif abs(strength - s.field_strength) < p.field_tolerance * s.field_strength and abs(dip - s.field_dip) < p.dip_tolerance:
         s.field_trust += dt
         s.field_doubt = 0.0
@@ -321,7 +329,7 @@ def average_field(p, s, m, dt):
         s.field_trust = 0.0
         s.field_doubt += dt
         if s.field_doubt > p.field_patience:
-            adopt_field(s, strength, dip)
+            adopt_field(method, p, s, strength, dip)
     if s.field_trust >= p.field_calm and 1.0 - dip * dip > p.least_horizontal * p.least_horizontal:
         s.compass = True
         s.field_weight += dt
@@ -334,11 +342,16 @@ def average_field(p, s, m, dt):
 
 
 @njit(cache=True, nogil=True)
-def adopt_field(s, strength, dip):
-    """Take the field that is there for the Earth's."""
+def adopt_field(method, p, s, strength, dip):
+    """Take the field that is there for the Earth's; the heading may be any then."""
     s.field_strength, s.field_dip = strength, dip
     s.field_doubt, s.field_trust, s.field_weight = 0.0, 0.0, 0.0
     s.field[:] = s.field_now
+    if method == MADGWICK:
+        s.covariance[2, 2] += p.start_heading * p.start_heading
+    elif method in (EKF, QUEST_EKF):
+        add_variance(s, 2, p.start_heading)
+        finish(s)
 
 
 @njit(cache=True, nogil=True)
@@ -392,9 +405,12 @@ def tilt_variance(p, s, force):
 
 
 @njit(cache=True, nogil=True)
-def doubted(p, variance, square):
-    """Variance of a measurement by its likelihood (001 eq. 6.5): one beyond the gate, in squares, has what puts it there."""
-    return max(variance, square / p.gate)
+def doubted(p, variance, square, own):
+    """Variance of a measurement by its likelihood (001 eq. 6.5): one beyond the gate has the variance that puts it there.
+
+    `square` is that of the innovation; what the state's `own` variance may explain is not held against it.
+    """
+    return max(variance, (square - p.own_gate * own) / p.gate)
 
 
 @njit(cache=True, nogil=True)
@@ -516,14 +532,16 @@ def ekf(p, s, scratch, force, usable, seen):
         square = 0.0
         for row in range(3):
             square += (s.mean_force[row] / force - gravity_row(s.q, row, h)) ** 2
-        variance = doubted(p, tilt_variance(p, s, force), square)
+        own = s.sigma[0] * s.sigma[0] + s.sigma[1] * s.sigma[1]
+        variance = doubted(p, tilt_variance(p, s, force), square, own)
         for row in range(3):
             predicted = gravity_row(s.q, row, h)
             update(s, h, s.mean_force[row] / force - predicted, variance, scratch)
         normalise(s.q)
     if seen:
         innovation = field_row(s, scratch[0], h)
-        update(s, h, innovation, doubted(p, heading_variance(p, s), innovation * innovation), scratch)
+        variance = doubted(p, heading_variance(p, s), innovation * innovation, s.sigma[2] * s.sigma[2])
+        update(s, h, innovation, variance, scratch)
     finish(s)
 
 
@@ -547,8 +565,9 @@ def quest_ekf(p, s, scratch, force, usable, seen):
         heading += tilt * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # a tilt turns the field aside
         if quest(p, s, scratch, force, seen, tilt, heading, measured):
             into_level(s.q, measured[1:4], error)  # the measured quaternion in the axes its noise is diagonal in
-            tilt = doubted(p, tilt, 4.0 * (error[0] * error[0] + error[1] * error[1]))
-            heading = doubted(p, heading, 4.0 * error[2] * error[2])
+            own = s.sigma[0] * s.sigma[0] + s.sigma[1] * s.sigma[1]
+            tilt = doubted(p, tilt, 4.0 * (error[0] * error[0] + error[1] * error[1]), own)
+            heading = doubted(p, heading, 4.0 * error[2] * error[2], s.sigma[2] * s.sigma[2])
             for axis in range(3 if seen else 2):
                 u = level_axis(s.q, axis)
                 for i in range(4):
@@ -570,11 +589,14 @@ def quest(p, s, scratch, force, seen, tilt, heading, out):
     dip = s.field_dip if seen else 0.0
     d[0], d[1], d[2] = 0.0, math.sqrt(1.0 - dip * dip), -dip
     into_sensor(s.q, d, v2)
-    size = math.sqrt(dot(s.field, s.field)) if seen else 1.0
+    along = 0.0 if seen else dot(v2, s.mean_force) / (force * force)
+    for i in range(3):  # without a compass the heading is what it is: north as it is held for, level
+        w2[i] = s.field[i] if seen else v2[i] - along * s.mean_force[i]
+    size = math.sqrt(dot(w2, w2))
     if size * size < LEAST:
         return False
     for i in range(3):
-        w2[i] = s.field[i] / size if seen else v2[i]  # without a compass the heading is what it is
+        w2[i] /= size
     a1, a2 = heading / (tilt + heading), tilt / (tilt + heading)
     B, S = scratch[8:11, 0:3], scratch[12:15, 0:3]
     for i in range(3):
@@ -688,7 +710,7 @@ def gains(p, cov, i, T, variance, square, seen):
     cov[b, b] += p.bias_walk * p.bias_walk * T
     if not seen:
         return 0.0, 0.0
-    S = cov[i, i] + doubted(p, variance, square)
+    S = cov[i, i] + doubted(p, variance, square, cov[i, i])
     gain, bias_gain = cov[i, i] / S, crossing / S
     cov[b, b] -= bias_gain * crossing
     cov[i, b] -= gain * crossing

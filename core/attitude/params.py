@@ -53,6 +53,8 @@ class Parameters:
     """s of disturbance after which the field is taken for a new one of the Earth's"""
     reference_time: float = 30.0
     """s over which strength and dip of the undisturbed field are learnt"""
+    reference_start: float = 1.0
+    """s from the start for which it is learnt from every reading"""
     least_horizontal: float = 0.1
     """of its strength: below it tells nothing of the heading, as near the magnetic poles"""
 
@@ -74,7 +76,9 @@ class Parameters:
     start_bias: float = radians(3.0)
     """rad/s, 1 sigma"""
     gate: float = 0.2
-    """squares of innovations, in their variances, beyond which they are less likely (001 eq. 6.5) than believed"""
+    """squares of innovations, in variances of one measurement, beyond which they are less likely (001 eq. 6.5) than believed"""
+    own_gate: float = 9.0
+    """squares of innovations, in variances of the state, that are not held against a measurement"""
 
     # Madgwick
     beta: float = radians(10.0)
