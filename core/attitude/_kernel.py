@@ -661,23 +661,37 @@ def madgwick(p, s, scratch, force, usable, seen):
     Near the goal the step is a share of the gradient: `gains` gives it, where (48) would tremble; far away it is no faster
     than `beta`. Of the field's gradient only the part about the vertical counts: a disturbed field shall not tilt.
     """
-    step, d, v = scratch[0], scratch[1], scratch[2]
-    downhill, drift = scratch[3], scratch[4]
-    for i in range(3):
-        step[1 + i] = drift[i] = 0.0
-    tilt_gain, tilt_drift = gains(p, s.covariance, 0, s.pending, tilt_variance(p, s, force), 0.0, usable)
-    slope = s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)
+    error, step, drift = scratch[0], scratch[1], scratch[2]
+    gradient_errors(s, scratch, force, usable, seen, error)
+    square = error[0] * error[0] + error[1] * error[1]
+    gain, bias_gain = gains(p, s.covariance, 0, s.pending, tilt_variance(p, s, force), square, usable)
+    for axis in range(2):
+        step[axis] = limited(gain * error[axis], p.beta * s.pending)
+        drift[axis] = bias_gain * error[axis]
+    slope = s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # a tilt turns the field aside
     variance = heading_variance(p, s) + s.covariance[0, 0] * slope
-    heading_gain, heading_drift = gains(p, s.covariance, 2, s.pending, variance, 0.0, seen)
+    gain, bias_gain = gains(p, s.covariance, 2, s.pending, variance, error[2] * error[2], seen)
+    step[2] = limited(gain * error[2], p.beta * s.pending)
+    drift[2] = bias_gain * error[2]
+    rotation(-step[0], -step[1], -step[2], error)
+    into_sensor(s.q, drift, drift)
+    product(error, s.q, s.q)
+    normalise(s.q)
+    for i in range(3):
+        s.bias[i] -= drift[i]
+
+
+@njit(cache=True, nogil=True)
+def gradient_errors(s, scratch, force, usable, seen, error):
+    """Rotations (rad) about east, north and up that the gradients of gravity and field point against; 0 = not seen."""
+    d, v, downhill = scratch[3], scratch[4], scratch[5]
+    error[0] = error[1] = error[2] = 0.0
     if usable:
         d[0], d[1], d[2] = 0.0, 0.0, 1.0
         for i in range(3):
             v[i] = s.mean_force[i] / force
         gradient(s.q, d, v, downhill)
-        for axis in range(2):
-            error = 0.5 * about(s.q, downhill, axis)
-            step[1 + axis] = -limited(tilt_gain * error, p.beta * s.pending)
-            drift[axis] = tilt_drift * limited(error, p.most_error)
+        error[0], error[1] = 0.5 * about(s.q, downhill, 0), 0.5 * about(s.q, downhill, 1)
     if seen:
         into_level(s.q, s.field, v)
         size = math.sqrt(dot(s.field, s.field))
@@ -686,15 +700,7 @@ def madgwick(p, s, scratch, force, usable, seen):
         for i in range(3):
             v[i] = s.field[i] / size
         gradient(s.q, d, v, downhill)
-        error = 0.5 * about(s.q, downhill, 2) / max(horizontal * horizontal, LEAST)
-        step[3] = -limited(heading_gain * error, p.beta * s.pending)
-        drift[2] = heading_drift * limited(error, p.most_error)
-    rotation(step[1], step[2], step[3], step)
-    into_sensor(s.q, drift, drift)
-    product(step, s.q, s.q)
-    normalise(s.q)
-    for i in range(3):
-        s.bias[i] -= drift[i]
+        error[2] = 0.5 * about(s.q, downhill, 2) / max(horizontal * horizontal, LEAST)
 
 
 @njit(cache=True, nogil=True)

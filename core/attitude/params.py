@@ -77,14 +77,12 @@ class Parameters:
     """rad/s, 1 sigma"""
     gate: float = 0.2
     """squares of innovations, in variances of one measurement, beyond which they are less likely (001 eq. 6.5) than believed"""
-    own_gate: float = 9.0
+    own_gate: float = 4.0
     """squares of innovations, in variances of the state, that are not held against a measurement"""
 
     # Madgwick
     beta: float = radians(10.0)
     """rad/s, fastest correction; twice the rate of the quaternion (003 eq. 43)"""
-    most_error: float = radians(1.0)
-    """rad, an error of an angle beyond it tells no more about the bias"""
 
     # QUEST and Kalman filter
     rate_lag: float = 0.5
@@ -110,8 +108,7 @@ MADGWICK = replace(
     shake_noise=0.06,
     excess_noise=3.0,
     field_noise=radians(0.4),
-    start_tilt=radians(3.0),
-    start_heading=radians(5.0),
+    angle_noise=radians(0.07),
     start_bias=radians(1.0),
 )
 """Its two angles know nothing of each other, so that more is left to chance."""
