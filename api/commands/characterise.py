@@ -25,7 +25,9 @@ def run(log: Path, log_format: Format | None, as_json: bool, plot: Path | None) 
     figure = None if plot is None else plots.new_figure(plot)
     found = _find(log, logs.read(log, log_format))
     if as_json:
-        typer.echo(json.dumps({"file": str(log)} | {name: _document(it) for name, it in found.items()}, allow_nan=False))
+        typer.echo(
+            json.dumps({"file": str(log)} | {name: _document(it) for name, it in found.items()}, allow_nan=False)
+        )
     else:
         _print_table(found)
     if plot is not None:

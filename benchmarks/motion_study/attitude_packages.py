@@ -1,7 +1,7 @@
 """Published Python packages on the same logs, with the settings they come with: attitudes (N, 4) q_ns of a log.
 
-All begin with the attitude of the first reading. `ahrs` counts directions north, west, up; `imufusion` and `vqf` can be
-told, or do, count east, north, up.
+All begin with the attitude of the first reading. `ahrs` and `imufusion` count directions north, west, up, `vqf` east,
+north, up.
 """
 
 from collections.abc import Callable, Mapping
@@ -41,8 +41,8 @@ def _start(log: MargLog) -> Floats:
     return quaternion.from_matrix(np.stack([np.cross(west, up), west, up]))
 
 
-def ahrs_madgwick(log: MargLog, gain: float = 0.041) -> Floats:
-    made = Madgwick(gain=gain, Dt=1 / _rate(log))
+def ahrs_madgwick(log: MargLog) -> Floats:
+    made = Madgwick(gain=0.041, Dt=1 / _rate(log))
     q = np.empty((len(log.samples), 4))
     q[0] = _start(log)
     for k in range(1, len(q)):
@@ -50,10 +50,8 @@ def ahrs_madgwick(log: MargLog, gain: float = 0.041) -> Floats:
     return quaternion.multiply(WEST_FROM_NORTH, q)
 
 
-def ahrs_ekf(log: MargLog, **noises: Any) -> Floats:
-    made = EKF(
-        log.samples.w_s, log.samples.f_s, _field(log), _rate(log), q0=_start(log), magnetic_ref=FIELD.tolist(), **noises
-    )
+def ahrs_ekf(log: MargLog) -> Floats:
+    made = EKF(log.samples.w_s, log.samples.f_s, _field(log), _rate(log), q0=_start(log), magnetic_ref=FIELD.tolist())
     return quaternion.multiply(WEST_FROM_NORTH, made.Q)
 
 
@@ -64,27 +62,36 @@ def ahrs_quest(log: MargLog) -> Floats:
     return quaternion.multiply(WEST_FROM_NORTH, np.array(q))
 
 
-def imufusion_ahrs(log: MargLog, gain: float = 0.5) -> Floats:
-    """Run Fusion with the settings of its own example, and its own estimate of the gyroscope's bias."""
+def imufusion_ahrs(log: MargLog) -> Floats:
+    """Run Fusion with its own gain and estimate of the gyroscope's bias, and rejection of disturbed fields.
+
+    Rejection of accelerations, which its example has too, made the tilt four times worse here and is left out.
+    """
     rate = _rate(log)
     made, bias = imufusion.Ahrs(), imufusion.Bias()
     made.set_settings(
         imufusion.AhrsSettings(
-            sample_rate=rate, convention=imufusion.CONVENTION_ENU, gain=gain, gyroscope_range=2000.0,
-            acceleration_rejection=10.0, magnetic_rejection=10.0, rejection_timeout=5.0,
+            sample_rate=rate,
+            convention=imufusion.CONVENTION_NWU,
+            gain=0.5,
+            gyroscope_range=2000.0,
+            magnetic_rejection=10.0,
+            rejection_timeout=5.0,
         )
     )
     bias.set_settings(imufusion.BiasSettings(sample_rate=rate))
     q = np.empty((len(log.samples), 4))
-    for k, (w, f, m) in enumerate(zip(np.degrees(log.samples.w_s), log.samples.f_s / GRAVITY, _field(log), strict=True)):
+    rates, forces = np.degrees(log.samples.w_s), log.samples.f_s / GRAVITY
+    for k, (w, f, m) in enumerate(zip(rates, forces, _field(log), strict=True)):
         made.update(bias.update(w), f, m)
         q[k] = made.get_quaternion()
-    return q
+    return quaternion.multiply(WEST_FROM_NORTH, q)
 
 
 def vqf(log: MargLog, **settings: Any) -> Floats:
     made = VQF(1 / _rate(log), **settings)
-    q: Floats = made.updateBatch(*(np.ascontiguousarray(x) for x in (log.samples.w_s, log.samples.f_s, _field(log))))["quat9D"]
+    readings = (np.ascontiguousarray(x) for x in (log.samples.w_s, log.samples.f_s, _field(log)))
+    q: Floats = made.updateBatch(*readings)["quat9D"]
     return q
 
 

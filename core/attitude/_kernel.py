@@ -322,7 +322,10 @@ def average_field(method, p, s, m, dt):
     if s.field_strength == 0.0 or s.age < p.reference_start:
         s.field_strength, s.field_dip = strength, dip
         s.field_trust += dt
-    elif abs(strength - s.field_strength) < p.field_tolerance * s.field_strength and abs(dip - s.field_dip) < p.dip_tolerance:
+    elif (
+        abs(strength - s.field_strength) < p.field_tolerance * s.field_strength
+        and abs(dip - s.field_dip) < p.dip_tolerance
+    ):
         s.field_trust += dt
         s.field_doubt = 0.0
     else:
@@ -390,9 +393,7 @@ def correct(method, p, s, scratch):
     s.turned[0], s.turned[1], s.turned[2], s.turned[3] = 1.0, 0.0, 0.0, 0.0
     s.pending = 0.0
     if method != LINEAR:
-        s.angles[2] = math.atan2(
-            2 * (s.q[0] * s.q[3] + s.q[1] * s.q[2]), 1 - 2 * (s.q[2] * s.q[2] + s.q[3] * s.q[3])
-        )
+        s.angles[2] = math.atan2(2 * (s.q[0] * s.q[3] + s.q[1] * s.q[2]), 1 - 2 * (s.q[2] * s.q[2] + s.q[3] * s.q[3]))
 
 
 @njit(cache=True, nogil=True)
@@ -612,9 +613,12 @@ def quest(p, s, scratch, force, seen, tilt, heading, out):
     sines = math.sqrt(max(1 - cosine_w * cosine_w, 0.0) * max(1 - cosine_v * cosine_v, 0.0))
     largest = math.sqrt(max(a1 * a1 + a2 * a2 + 2 * a1 * a2 * (cosine_w * cosine_v + sines), 0.0))
     kappa = (
-        S[0, 0] * S[1, 1] - S[0, 1] * S[0, 1]
-        + S[1, 1] * S[2, 2] - S[1, 2] * S[1, 2]
-        + S[2, 2] * S[0, 0] - S[0, 2] * S[0, 2]
+        S[0, 0] * S[1, 1]
+        - S[0, 1] * S[0, 1]
+        + S[1, 1] * S[2, 2]
+        - S[1, 2] * S[1, 2]
+        + S[2, 2] * S[0, 0]
+        - S[0, 2] * S[0, 2]
     )
     determinant = (
         S[0, 0] * (S[1, 1] * S[2, 2] - S[1, 2] * S[1, 2])
@@ -744,7 +748,9 @@ def turn_linear(p, s, rate, dt):
     cosine = math.copysign(max(abs(math.cos(pitch)), p.least_cosine), math.cos(pitch))
     across = rate[1] * math.sin(roll) + rate[2] * math.cos(roll)
     s.angles[0] = wrap(roll + dt * (rate[0] + across * math.sin(pitch) / cosine))
-    s.angles[1] = min(max(pitch + dt * (rate[1] * math.cos(roll) - rate[2] * math.sin(roll)), -0.5 * math.pi), 0.5 * math.pi)
+    s.angles[1] = min(
+        max(pitch + dt * (rate[1] * math.cos(roll) - rate[2] * math.sin(roll)), -0.5 * math.pi), 0.5 * math.pi
+    )
     s.angles[2] = wrap(s.angles[2] + dt * across / cosine)
     from_angles(s.angles[0], s.angles[1], s.angles[2], s.q)
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.attitude import _kernel
-from core.attitude.params import DEFAULT, MADGWICK, QUEST_EKF, Parameters, as_record
+from core.attitude.params import DEFAULT, LINEAR, MADGWICK, QUEST_EKF, Parameters, as_record
 from core.samples import Samples
 
 Floats = NDArray[np.float64]
@@ -77,7 +77,7 @@ class Filter(NamedTuple):
 
 FILTERS: Mapping[str, Filter] = {
     "gyro": Filter(_kernel.GYRO, DEFAULT, follows_field=False),
-    "linear": Filter(_kernel.LINEAR, DEFAULT, follows_field=False),
+    "linear": Filter(_kernel.LINEAR, LINEAR, follows_field=False),
     "ekf": Filter(_kernel.EKF, DEFAULT, follows_field=True),
     "madgwick": Filter(_kernel.MADGWICK, MADGWICK, follows_field=True),
     "quest-ekf": Filter(_kernel.QUEST_EKF, QUEST_EKF, follows_field=True),

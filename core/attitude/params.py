@@ -102,16 +102,25 @@ class Parameters:
 DEFAULT = Parameters()
 MADGWICK = replace(
     DEFAULT,
-    force_time=1.0,
-    spread_rise=0.5,
-    tilt_noise=radians(0.06),
-    shake_noise=0.06,
-    excess_noise=3.0,
+    force_time=0.9,
+    spread_time=20.0,
+    spread_rise=1.0,
+    tilt_noise=radians(0.055),
+    shake_noise=0.056,
     field_noise=radians(0.4),
-    angle_noise=radians(0.07),
+    angle_noise=radians(0.015),
+    bias_walk=radians(0.002),
     start_bias=radians(1.0),
 )
 """Its two angles know nothing of each other, so that more is left to chance."""
+LINEAR = replace(
+    DEFAULT,
+    force_time=0.2,
+    spread_time=15.0,
+    tilt_noise=radians(0.05),
+    shake_noise=0.06,
+    angle_noise=radians(0.015),
+)
 QUEST_EKF = replace(
     DEFAULT,
     force_time=0.85,

@@ -14,7 +14,14 @@ CORRECTING = [name for name in FILTERS if name != "gyro"]
 COMPASSED = ["ekf", "madgwick", "quest-ekf"]
 RATE = 100.0
 EARTH = FIELD_STRENGTH * np.array([0.0, np.cos(DIP), -np.sin(DIP)])
-HURTING = [[0.0, 0.0, 0.0], [np.pi, 0.0, 0.0], [0.0, np.pi - 1e-6, 0.0], [0.0, 0.0, np.pi], [0.0, np.pi / 2, 0.0], [1.0, -2.0, 0.5]]
+HURTING = [
+    [0.0, 0.0, 0.0],
+    [np.pi, 0.0, 0.0],
+    [0.0, np.pi - 1e-6, 0.0],
+    [0.0, 0.0, np.pi],
+    [0.0, np.pi / 2, 0.0],
+    [1.0, -2.0, 0.5],
+]
 
 
 @cache
@@ -200,7 +207,10 @@ def test_another_field_is_believed_after_a_while(name: str) -> None:
 def test_the_gyroscope_alone_drifts_as_in_figure_12_and_the_filters_do_not() -> None:
     """003 fig. 12: at rest, 0.07 deg/s of bias over 150 s is 10 deg."""
     log = simulate(MargScenario("rest", 150.0, gyro_bias=np.radians(0.07 / np.sqrt(3))))
-    drift = {name: np.degrees(quaternion.angle_between(used.run(log.samples)[1].q_ns[-1], log.q_ns[-1])) for name, used in FILTERS.items()}
+    drift = {
+        name: np.degrees(quaternion.angle_between(used.run(log.samples)[1].q_ns[-1], log.q_ns[-1]))
+        for name, used in FILTERS.items()
+    }
     assert drift["gyro"] == pytest.approx(10.5, abs=0.5)
     for name in COMPASSED:
         assert drift[name] < 0.5

@@ -16,7 +16,13 @@ AXES = np.eye(3)
 RNG = np.random.default_rng(7)
 HURTING = [
     quaternion.from_rotation_vector(v)
-    for v in ([0.0, 0.0, 0.0], [1e-9, 0.0, 0.0], [np.pi - 1e-7, 0.0, 0.0], [0.0, np.pi / 2, 0.0], [0.0, -np.pi / 2, 0.0])
+    for v in (
+        [0.0, 0.0, 0.0],
+        [1e-9, 0.0, 0.0],
+        [np.pi - 1e-7, 0.0, 0.0],
+        [0.0, np.pi / 2, 0.0],
+        [0.0, -np.pi / 2, 0.0],
+    )
 ]
 ROTATIONS = [*HURTING, *quaternion.random(RNG, 8)]
 
