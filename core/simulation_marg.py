@@ -59,10 +59,11 @@ class Kind(NamedTuple):
     """m, amplitude up and down at the frequency of steps"""
 
 
+NOTHING = Wander(0.0, (0.1, 0.2))
 STEP_FREQUENCY = 1.9
 """Hz"""
 KINDS = {
-    "rest": Kind(*[Wander(0.0, (0.1, 0.2))] * 4, 0.0),
+    "rest": Kind(NOTHING, NOTHING, NOTHING, NOTHING, 0.0),
     "level": Kind(
         Wander(1.0, (0.02, 0.12)), Wander(0.06, (0.1, 0.7)), Wander(3.0, (0.02, 0.08)), Wander(0.01, (1.0, 3.0)), 0.0
     ),
@@ -133,7 +134,8 @@ class _Waves(NamedTuple):
         return cls(amplitude, rng.uniform(*wander.band, WAVES), rng.uniform(0, 2 * pi, WAVES))
 
     def at(self, t: Floats) -> Floats:
-        return (self.amplitude * np.sin(2 * pi * self.frequency * t[:, None] + self.phase)).sum(axis=1)
+        sum_: Floats = np.sin(2 * pi * self.frequency * t[:, None] + self.phase) @ self.amplitude
+        return sum_
 
 
 class _Path(NamedTuple):
@@ -184,7 +186,7 @@ def simulate(scenario: MargScenario) -> MargLog:
     q_ns = path.attitude(t)
     q_sn = quaternion.conjugate(q_ns)
     bias = scenario.gyro_bias * rng.choice([-1.0, 1.0], 3)
-    f_s = quaternion.rotate(q_sn, path.acceleration(t) + [0.0, 0.0, GRAVITY])
+    f_s = quaternion.rotate(q_sn, path.acceleration(t) + np.array([0.0, 0.0, GRAVITY]))
     w_s = _mean_rate(path, t, 1 / scenario.rate) + bias
     m_n = np.tile(FIELD_STRENGTH * np.array([0.0, cos(DIP), -sin(DIP)]), (t.size, 1))
     added_n, added_s = _disturbances(scenario, t, rng) if scenario.disturbed else np.zeros((2, t.size, 3))
@@ -213,7 +215,7 @@ def _mean_rate(path: _Path, t: Floats, step: float) -> Floats:
 
 
 def _disturbances(scenario: MargScenario, t: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Fields of things that stand about (local level axes), and of things that lie on the sensor (its axes), in turn."""
+    """Fields of things that stand about (local level axes) and of things that lie on the sensor, in turn."""
     added = np.zeros((2, t.size, 3))
     start, number = STILL + 12.0, 0
     while start < t[-1]:

@@ -1,4 +1,4 @@
-"""`livella attitude`: the attitude of a device through a log, from its own gyroscope, accelerometer and magnetometer."""
+"""`livella attitude`: attitude of a device through a log, from its own gyroscope, accelerometer and magnetometer."""
 
 import json
 from pathlib import Path

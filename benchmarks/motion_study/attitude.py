@@ -116,21 +116,23 @@ def write() -> None:
         "measured",
         f"""## Measured
 
-By `make bench-motion`. {len(SEEDS)} logs of {SECONDS:.0f} s at 100 Hz of each kind (`core/simulation_marg.py`), with seeds no filter was
-tuned on. The gyroscope has a bias of 0.5 deg/s on each axis. Every log begins with 4 s at rest, and errors count from {SETTLED:.0f} s on.
-Packages run with the settings they come with. VQF is also shown with a longer time constant, which suits these logs.
+By `make bench-motion`. {len(SEEDS)} logs of {SECONDS:.0f} s at 100 Hz of each kind (`core/simulation_marg.py`), with
+seeds no filter was tuned on. The gyroscope has a bias of 0.5 deg/s on each axis. Every log begins with 4 s at rest, and
+errors count from {SETTLED:.0f} s on. Packages run with the settings they come with, our filters with what was tuned on
+other logs of these kinds. So that this is not taken for more than it is, VQF is also shown with a longer time constant.
 
 ### Error, degrees root mean square: tilt / heading
 
 {accuracy(table)}
 
-The disturbed logs have fields of 15 to 60 µT that come and go, up to half of the time. `gyro` and `linear` do not follow the field: their heading
-drifts with the bias. They are shown near the level, where the linear filter is meant to work.
+The disturbed logs have fields of 15 to 60 µT that come and go, up to half of the time. `gyro` and `linear` do not
+follow the field: their heading drifts with the bias. They are shown near the level, where the linear filter is meant to
+work.
 
 ### Beside what was wanted
 
-Tilt at most {TILT:.0f}° everywhere, heading at most {HEADING:.0f}° in an undisturbed field, and neither more than 10 % above the best of the packages
-as they come.
+Tilt at most {TILT:.0f}° everywhere, heading at most {HEADING:.0f}° in an undisturbed field, and neither more than 10 %
+above the best of the packages as they come.
 
 {targets(table)}
 
@@ -146,7 +148,8 @@ As in 003 figure 12: a bias of 0.07 deg/s, 150 s.
 
 ### Speed
 
-Of the compiled kernel, violent motion, magnetometer and barometer, the best of {REPEATS} runs on the machine that wrote this page.
+Of the compiled kernel, violent motion, magnetometer and barometer, the best of {REPEATS} runs on the machine that
+wrote this page.
 
 {speed()}
 """,

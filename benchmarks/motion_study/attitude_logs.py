@@ -31,6 +31,7 @@ class Cell(NamedTuple):
     disturbed: bool
 
     def logs(self) -> list[MargLog]:
+        """Simulate the logs."""
         return [simulate(MargScenario(self.motion, SECONDS, seed, disturbed=self.disturbed)) for seed in SEEDS]
 
 

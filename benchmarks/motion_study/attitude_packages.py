@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from vqf import VQF
 
 from core import quaternion
-from core.simulation_marg import DIP, GRAVITY, MargLog
+from core.simulation_marg import DIP, MargLog
+from core.simulation_motion import GRAVITY
 
 Floats = NDArray[np.float64]
 

@@ -1,8 +1,8 @@
 """Every numba function of the attitude filters; imports nothing of the project: numba's cache watches one file.
 
-`p` parameters and `s` state are records (`params`, `STATE`). Between two corrections the attitude follows the gyroscope,
-and so do the averages of what accelerometer and magnetometer read: kept in the sensor's axes, they are turned along with
-it. A filter is what happens at a correction, and for the linear one also between them.
+`p` parameters and `s` state are records (`params`, `STATE`). Between two corrections the attitude follows the
+gyroscope, and so do the averages of what accelerometer and magnetometer read: kept in the sensor's axes, they are
+turned along with it. A filter is what happens at a correction, and for the linear one also between them.
 
 Letters: f specific force, m magnetic field, q attitude q_ns, d a direction in local level axes, S innovation variance.
 """
@@ -267,8 +267,7 @@ def level_axis(q, axis):
 @njit(cache=True, nogil=True)
 def turn(method, p, s, dt, scratch):
     """Turn the attitude by what the gyroscope read, and the averages with the sensor."""
-    delta, back = scratch[0], scratch[1]
-    rate = scratch[2]
+    delta, rate = scratch[0], scratch[1]
     for i in range(3):
         rate[i] = s.rate[i] - s.bias[i]
     if method == QUEST_EKF:
@@ -407,7 +406,7 @@ def tilt_variance(p, s, force):
 
 @njit(cache=True, nogil=True)
 def doubted(p, variance, square, own):
-    """Variance of a measurement by its likelihood (001 eq. 6.5): one beyond the gate has the variance that puts it there.
+    """Variance of a measurement by its likelihood (001 eq. 6.5): one beyond the gate has what puts it there.
 
     `square` is that of the innovation; what the state's `own` variance may explain is not held against it.
     """
@@ -662,8 +661,9 @@ def gradient(q, d, v, out):
 def madgwick(p, s, scratch, force, usable, seen):
     """Filter of 003 4.2: a step down the gradient of each vector (46-48), its mean the gyroscope's bias (50-52).
 
-    Near the goal the step is a share of the gradient: `gains` gives it, where (48) would tremble; far away it is no faster
-    than `beta`. Of the field's gradient only the part about the vertical counts: a disturbed field shall not tilt.
+    Near the goal the step is a share of the gradient: `gains` gives it, where (48) would tremble; far away it is no
+    faster than `beta`. Of the field's gradient only the part about the vertical counts: a disturbed field shall not
+    tilt.
     """
     error, step, drift = scratch[0], scratch[1], scratch[2]
     gradient_errors(s, scratch, force, usable, seen, error)
@@ -743,7 +743,7 @@ def limited(value, most):
 
 @njit(cache=True, nogil=True)
 def turn_linear(p, s, rate, dt):
-    """Prediction of 001 eq. 6.10, its input the rates of roll, pitch and yaw, which near the level are the gyroscope's."""
+    """Prediction of 001 eq. 6.10, its input the rates of the angles, which near the level are the gyroscope's."""
     roll, pitch = s.angles[0], s.angles[1]
     cosine = math.copysign(max(abs(math.cos(pitch)), p.least_cosine), math.cos(pitch))
     across = rate[1] * math.sin(roll) + rate[2] * math.cos(roll)

@@ -4,8 +4,8 @@
     state = initial_state(ekf.params)
     state, attitudes = ekf.advance(ekf.params, state, samples)
 
-Samples in any pieces give the same attitudes as at once. Gaps, readings that are none, free fall and a vertical magnetic
-field leave an attitude that is a rotation; without a magnetometer heading is relative to the start.
+Samples in any pieces give the same attitudes as at once. Gaps, readings that are none, free fall and a vertical
+magnetic field leave an attitude that is a rotation; without a magnetometer heading is relative to the start.
 """
 
 from collections.abc import Mapping

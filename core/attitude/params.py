@@ -76,7 +76,7 @@ class Parameters:
     start_bias: float = radians(3.0)
     """rad/s, 1 sigma"""
     gate: float = 0.2
-    """squares of innovations, in variances of one measurement, beyond which they are less likely (001 eq. 6.5) than believed"""
+    """squares of innovations, in variances of one measurement, beyond which they are not likely (001 eq. 6.5)"""
     own_gate: float = 4.0
     """squares of innovations, in variances of the state, that are not held against a measurement"""
 

@@ -15,11 +15,11 @@ def times(n: int = N) -> Floats:
 
 
 def white(seed: int = 0, n: int = N) -> Floats:
-    return np.random.default_rng(seed).normal(size=(n, 3)) * [1.0, 2.0, 4.0]
+    return np.random.default_rng(seed).normal(size=(n, 3)) * np.array([1.0, 2.0, 4.0])
 
 
 def test_means_and_variances_are_those_of_the_readings() -> None:
-    found = characterise(times(), white() + [0.1, -0.2, 0.3])
+    found = characterise(times(), white() + np.array([0.1, -0.2, 0.3]))
     np.testing.assert_allclose(found.mean, [0.1, -0.2, 0.3], atol=0.07)
     np.testing.assert_allclose(found.variance, [1.0, 4.0, 16.0], rtol=0.03)
     assert found.rate == pytest.approx(100.0)

@@ -1,5 +1,6 @@
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -7,7 +8,8 @@ from numpy.typing import NDArray
 
 from core import Samples, quaternion
 from core.attitude import DEFAULT, FILTERS, Attitudes, has_compass, initial_state
-from core.simulation_marg import DIP, FIELD_STRENGTH, GRAVITY, MargLog, MargScenario, simulate
+from core.simulation_marg import DIP, FIELD_STRENGTH, MargLog, MargScenario, simulate
+from core.simulation_motion import GRAVITY
 
 Floats = NDArray[np.float64]
 CORRECTING = [name for name in FILTERS if name != "gyro"]
@@ -29,11 +31,11 @@ def log_of(motion: str, seed: int = 11, disturbed: bool = False, magnetometer: b
     return simulate(MargScenario(motion, 60.0, seed, disturbed=disturbed, magnetometer=magnetometer))
 
 
-def still(q_ns: Floats, seconds: float = 10.0, w: float = 0.0, **more: Floats) -> Samples:
+def still(q_ns: Floats, seconds: float = 10.0) -> Samples:
     """Readings without noise of a sensor that stands at one attitude."""
     n = int(seconds * RATE)
     f, m = (np.tile(quaternion.rotate(quaternion.conjugate(q_ns), v), (n, 1)) for v in ([0.0, 0.0, GRAVITY], EARTH))
-    return replace(Samples.make(np.arange(n) / RATE, f, np.full((n, 3), w), m_s=m), **more)
+    return Samples.make(np.arange(n) / RATE, f, np.zeros((n, 3)), m_s=m)
 
 
 def errors(found: Floats, truth: Floats) -> tuple[Floats, Floats]:
@@ -61,7 +63,7 @@ def test_pieces_give_what_the_whole_gives(name: str, disturbed: bool) -> None:
     whole, at_once = used.run(samples)
     cuts = [0, 1, 2, 2, 37, 1000, 1001, 4321, len(samples)]
     state, parts = initial_state(used.params), []
-    for start, stop in zip(cuts, cuts[1:], strict=False):
+    for start, stop in pairwise(cuts):
         state, part = used.advance(used.params, state, samples.slice(start, stop))
         parts.append(part)
     assert state.tobytes() == whole.tobytes()
@@ -195,6 +197,7 @@ def test_a_vertical_field_gives_no_heading(name: str) -> None:
 def test_another_field_is_believed_after_a_while(name: str) -> None:
     """A device that is carried into another place: heading holds, then goes over to the field that is there."""
     samples = still(np.array([1.0, 0.0, 0.0, 0.0]), 200.0)
+    assert samples.m_s is not None
     samples.m_s[2000:] = 1.4 * quaternion.rotate(quaternion.from_rotation_vector([0.0, 0.0, 0.5]), EARTH)
     found = FILTERS[name].run(samples)[1]
     yaw = quaternion.all_angles(found.q_ns)[:, 2]

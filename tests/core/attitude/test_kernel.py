@@ -56,7 +56,7 @@ def test_vectors_are_turned_as_by_the_matrix(q: Floats) -> None:
 @pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-4, 9.99e-5, 1.0, np.pi, 6.0])
 def test_rotation_vectors_and_angles(angle: float) -> None:
     v, out = angle * np.array([0.48, -0.6, 0.64]), np.empty(4)
-    _kernel.rotation(*v, out)
+    _kernel.rotation(v[0], v[1], v[2], out)
     np.testing.assert_allclose(out, quaternion.from_rotation_vector(v), atol=1e-15)
     _kernel.from_angles(0.3, -0.2, angle, out)
     np.testing.assert_allclose(quaternion.normalise(out), quaternion.from_angles(0.3, -0.2, angle), atol=1e-15)
@@ -94,7 +94,7 @@ def test_jacobian_of_the_heading_of_the_field(q: Floats, dip: float) -> None:
 
 @pytest.mark.parametrize("q", ROTATIONS)
 def test_gradient_of_madgwick(q: Floats) -> None:
-    """003 eq. 28-30: gradient of half the square of R(q)'d - v with the diagonal of R written as there, 1/2 - y^2 - z^2."""
+    """003 eq. 28-30: gradient of half the square of R(q)'d - v, the diagonal of R as there, 1 - 2 (y^2 + z^2)."""
     d, v = (x / np.linalg.norm(x) for x in RNG.normal(size=(2, 3)))
 
     def half_square(x: Floats) -> Floats:
