@@ -670,13 +670,11 @@ def madgwick(p, s, scratch, force, usable, seen):
     square = error[0] * error[0] + error[1] * error[1]
     gain, bias_gain = gains(p, s.covariance, 0, s.pending, tilt_variance(p, s, force), square, usable)
     for axis in range(2):
-        step[axis] = limited(gain * error[axis], p.beta * s.pending)
-        drift[axis] = bias_gain * error[axis]
+        step[axis], drift[axis] = step_and_drift(p, s, gain, bias_gain, error[axis])
     slope = s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # a tilt turns the field aside
     variance = heading_variance(p, s) + s.covariance[0, 0] * slope
     gain, bias_gain = gains(p, s.covariance, 2, s.pending, variance, error[2] * error[2], seen)
-    step[2] = limited(gain * error[2], p.beta * s.pending)
-    drift[2] = bias_gain * error[2]
+    step[2], drift[2] = step_and_drift(p, s, gain, bias_gain, error[2])
     rotation(-step[0], -step[1], -step[2], error)
     into_sensor(s.q, drift, drift)
     product(error, s.q, s.q)
@@ -736,9 +734,11 @@ def about(q, slope, axis):
 
 
 @njit(cache=True, nogil=True)
-def limited(value, most):
-    """Give the value, no larger than `most` either way."""
-    return min(max(value, -most), most)
+def step_and_drift(p, s, gain, bias_gain, error):
+    """Shares of an error for the angle, no faster than `beta`, and for the bias, which learns no more than is corrected."""
+    wanted, most = gain * error, p.beta * s.pending
+    step = min(max(wanted, -most), most)
+    return step, bias_gain * error * (step / wanted if wanted != 0.0 else 1.0)
 
 
 @njit(cache=True, nogil=True)

@@ -81,7 +81,7 @@ class Parameters:
     """squares of innovations, in variances of the state, that are not held against a measurement"""
 
     # Madgwick
-    beta: float = radians(10.0)
+    beta: float = radians(20.0)
     """rad/s, fastest correction; twice the rate of the quaternion (003 eq. 43)"""
 
     # QUEST and Kalman filter

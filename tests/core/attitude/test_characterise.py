@@ -11,11 +11,13 @@ N = 60_000
 
 
 def times(n: int = N) -> Floats:
-    return np.arange(n) * STEP
+    t: Floats = np.arange(n) * STEP
+    return t
 
 
 def white(seed: int = 0, n: int = N) -> Floats:
-    return np.random.default_rng(seed).normal(size=(n, 3)) * np.array([1.0, 2.0, 4.0])
+    noise: Floats = np.random.default_rng(seed).normal(size=(n, 3)) * np.array([1.0, 2.0, 4.0])
+    return noise
 
 
 def test_means_and_variances_are_those_of_the_readings() -> None:
