@@ -18,6 +18,8 @@ MOST_FORCE, MOST_FIELD, MOST_RATE = 1e4, 1e5, 1e3
 """m/s2, uT, rad/s; more is no reading"""
 LEAST = 1e-12
 """squares of lengths below count as none"""
+MOST_LINEAR = 0.2
+"""rad, heading error up to which a tilt's share in it is believed"""
 SEA_LEVEL_PRESSURE, SCALE_HEIGHT, LAPSE_EXPONENT = 101325.0, 44330.77, 0.190263
 """Pa, m, -: ICAO standard atmosphere below 11 km"""
 
@@ -300,7 +302,7 @@ def average_force(p, s, f, dt):
         s.force[i] += gain * change
         s.mean_force[i] += gain * (s.force[i] - s.mean_force[i])
     time = p.spread_rise if square > s.spread else p.spread_time  # shaking is believed at once, calm only after a while
-    s.spread += dt / (time + dt) * (square - s.spread)
+    s.spread += dt / (min(time, s.age) + dt) * (square - s.spread)
 
 
 @njit(cache=True, nogil=True)
@@ -490,15 +492,17 @@ def finish(s):
 def field_row(s, field, h):
     """Heading error that the averaged field tells of, and its Jacobian: all that (001 eq. 6.21) leaves of (6.22-6.24).
 
-    What is left is the angle from north of the field's horizontal part, and a tilt about north changes it too.
+    What is left is the angle from north of the field's horizontal part. A tilt about north changes it too, which is
+    told only where the angle is small: far from the goal it would throw the tilt about.
     """
     into_level(s.q, s.field, field)
-    slope = field[2] / math.hypot(field[0], field[1])
+    off = math.atan2(field[0], field[1])
+    slope = field[2] / math.hypot(field[0], field[1]) if abs(off) < MOST_LINEAR else 0.0
     up, north = level_axis(s.q, 2), level_axis(s.q, 1)
     for i in range(4):
         h[i] = 2.0 * (up[i] - slope * north[i])
     h[4] = h[5] = h[6] = 0.0
-    return math.atan2(field[0], field[1])
+    return off
 
 
 @njit(cache=True, nogil=True)
@@ -537,10 +541,13 @@ def ekf(p, s, scratch, force, usable, seen):
         for row in range(3):
             predicted = gravity_row(s.q, row, h)
             update(s, h, s.mean_force[row] / force - predicted, variance, scratch)
-        normalise(s.q)
+            normalise(s.q)
     if seen:
         innovation = field_row(s, scratch[0], h)
-        variance = doubted(p, heading_variance(p, s), innovation * innovation, s.sigma[2] * s.sigma[2])
+        variance = heading_variance(p, s)
+        if abs(innovation) >= MOST_LINEAR:  # as much may come from a tilt
+            variance += tilt_variance(p, s, force) * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)
+        variance = doubted(p, variance, innovation * innovation, s.sigma[2] * s.sigma[2])
         update(s, h, innovation, variance, scratch)
     finish(s)
 
@@ -735,7 +742,7 @@ def about(q, slope, axis):
 
 @njit(cache=True, nogil=True)
 def step_and_drift(p, s, gain, bias_gain, error):
-    """Shares of an error for the angle, no faster than `beta`, and for the bias, which learns no more than is corrected."""
+    """Shares of an error for the angle, no faster than `beta`, and for the bias, which learns as much less."""
     wanted, most = gain * error, p.beta * s.pending
     step = min(max(wanted, -most), most)
     return step, bias_gain * error * (step / wanted if wanted != 0.0 else 1.0)

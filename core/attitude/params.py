@@ -41,7 +41,7 @@ class Parameters:
     """s over which it is averaged"""
     field_moment: float = 0.05
     """s over which it is averaged to judge it"""
-    field_noise: float = radians(0.15)
+    field_noise: float = radians(0.5)
     """rad sqrt(s), of its average's direction"""
     field_tolerance: float = 0.05
     """of its strength: more is a disturbance"""
@@ -53,7 +53,7 @@ class Parameters:
     """s of disturbance after which the field is taken for a new one of the Earth's"""
     reference_time: float = 30.0
     """s over which strength and dip of the undisturbed field are learnt"""
-    reference_start: float = 1.0
+    reference_start: float = 4.0
     """s from the start for which it is learnt from every reading"""
     least_horizontal: float = 0.1
     """of its strength: below it tells nothing of the heading, as near the magnetic poles"""
@@ -73,7 +73,7 @@ class Parameters:
     """rad, 1 sigma of a first attitude"""
     start_heading: float = radians(40.0)
     """rad, the same"""
-    start_bias: float = radians(3.0)
+    start_bias: float = radians(1.0)
     """rad/s, 1 sigma"""
     gate: float = 0.2
     """squares of innovations, in variances of one measurement, beyond which they are not likely (001 eq. 6.5)"""
@@ -108,9 +108,9 @@ MADGWICK = replace(
     tilt_noise=radians(0.055),
     shake_noise=0.056,
     field_noise=radians(0.4),
+    gate=5.0,
     angle_noise=radians(0.015),
     bias_walk=radians(0.002),
-    start_bias=radians(1.0),
 )
 """Its two angles know nothing of each other, so that more is left to chance."""
 LINEAR = replace(
@@ -127,6 +127,7 @@ QUEST_EKF = replace(
     tilt_noise=radians(0.35),
     shake_noise=0.09,
     excess_noise=3.0,
+    field_noise=radians(0.15),
     rate_noise=radians(0.04),
     start_heading=radians(20.0),
 )
