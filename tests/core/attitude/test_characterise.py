@@ -11,7 +11,7 @@ N = 60_000
 
 
 def times(n: int = N) -> Floats:
-    t: Floats = np.arange(n) * STEP
+    t: Floats = np.arange(n, dtype=np.float64) * STEP
     return t
 
 
