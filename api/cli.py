@@ -136,7 +136,7 @@ def simulate(
         str,
         typer.Option(
             help="Kind of drive: city, hills, straight, motorway, parked, roundabout, curves, constant, steep, crawl, "
-            "towed or ferry."
+            "harsh, towed or ferry."
         ),
     ] = "city",
     seconds: Annotated[float, typer.Option(min=1.0, max=86400.0, help="Length of the drive.")] = 600.0,

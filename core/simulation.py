@@ -40,7 +40,7 @@ class Scenario:
     """What to simulate. Rotations are quaternions q_vs, places are m from the turning point in vehicle axes."""
 
     route: str = "city"
-    """city, hills, straight, motorway, parked, roundabout, curves, constant, steep, crawl, towed, ferry"""
+    """city, hills, straight, motorway, parked, roundabout, curves, constant, steep, crawl, harsh, towed, ferry"""
     seconds: float = 600.0
     seed: int = 0
     mount: ArrayLike | None = None

@@ -210,9 +210,10 @@ def manoeuvres(seed: int, seconds: float = 600.0, rate: float = 100.0, gyro: boo
     routing, riding, sensing, receiving = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4))
     plan = Itinerary(routing)
     plan.hold(3.0)
+    route = ROUTES["harsh"]
     while plan.t < seconds + MARGIN:
-        _stretch(plan)
-    road = ROUTES["city"].road
+        route.stretch(plan)
+    road = route.road
     trajectory = Trajectory.of(plan, road, seconds, riding)
     t = np.arange(0.0, seconds, 1 / rate)
     motion, q_vs = trajectory.at(t), quaternion.random(sensing)
@@ -228,22 +229,3 @@ def manoeuvres(seed: int, seconds: float = 600.0, rate: float = 100.0, gyro: boo
     left = np.column_stack([-heading[:, 1], heading[:, 0]])
     a_v = np.column_stack([(motion.a_n[:, :2] * axis).sum(axis=1) for axis in (heading, left)])
     return Manoeuvres(samples, q_vs, t, a_v, float(np.abs(motion.speed).sum() / rate))
-
-
-def _stretch(plan: Itinerary) -> None:
-    """One manoeuvre; a third of them harsh."""
-    harsh, what = plan.chance(1 / 3), plan.rng.random()
-    plan.reach(plan.uniform(10, 20), plan.uniform(1.0, 2.2))
-    plan.hold(plan.uniform(4, 12))
-    if what < 0.35:
-        plan.reach(plan.uniform(0, 4), plan.uniform(4.5, 9.0) if harsh else plan.uniform(1.2, 2.8))
-        plan.hold(plan.uniform(3, 8))
-    elif what < 0.65:
-        plan.reach(plan.uniform(2, 5))
-        plan.hold(plan.uniform(3, 6))
-        plan.reach(plan.uniform(14, 20), plan.uniform(3.8, 5.5) if harsh else plan.uniform(1.0, 2.4))
-        plan.hold(plan.uniform(3, 6))
-    else:
-        lateral = plan.uniform(5.0, 7.5) if harsh else plan.uniform(1.5, 3.2)
-        plan.bend(plan.side() * plan.uniform(0.6, 1.6), plan.speed**2 / lateral)
-        plan.hold(plan.uniform(3, 6))

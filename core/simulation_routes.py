@@ -178,6 +178,25 @@ def _crawl(plan: Itinerary) -> None:
         plan.hold(plan.uniform(2, 20))
 
 
+def _harsh(plan: Itinerary) -> None:
+    """One manoeuvre: braking, setting off or a bend; a third of them harsh."""
+    harsh, what = plan.chance(1 / 3), plan.rng.random()
+    plan.reach(plan.uniform(10, 20), plan.uniform(1.0, 2.2))
+    plan.hold(plan.uniform(4, 12))
+    if what < 0.35:
+        plan.reach(plan.uniform(0, 4), plan.uniform(4.5, 9.0) if harsh else plan.uniform(1.2, 2.8))
+        plan.hold(plan.uniform(3, 8))
+    elif what < 0.65:
+        plan.reach(plan.uniform(2, 5))
+        plan.hold(plan.uniform(3, 6))
+        plan.reach(plan.uniform(14, 20), plan.uniform(3.8, 5.5) if harsh else plan.uniform(1.0, 2.4))
+        plan.hold(plan.uniform(3, 6))
+    else:
+        lateral = plan.uniform(5.0, 7.5) if harsh else plan.uniform(1.5, 3.2)
+        plan.bend(plan.side() * plan.uniform(0.6, 1.6), plan.speed**2 / lateral)
+        plan.hold(plan.uniform(3, 6))
+
+
 class Road(NamedTuple):
     """What a kind of way does to the vehicle; slopes are smooth in the distance driven and level on average."""
 
@@ -226,6 +245,7 @@ ROUTES = {
     ),
     "steep": Route(_hills, Road(grade_rms=0.12, grade_limit=0.2, bank_rms=0.03, roughness=1.2)),
     "crawl": Route(_crawl, _TOWN),
+    "harsh": Route(_harsh, _TOWN),
     "towed": Route(_city, _TOWN._replace(lifted=radians(8.0))),
     "ferry": Route(
         _ferry,

@@ -44,6 +44,8 @@ SLIPPING = Trip("city", 30 * MINUTE, knocked_at=(400.0, 1000.0, 1600.0))
 STUCK = Trip("city", 6 * MINUTE, faults=Disturbances(stuck=(0, 240.0)))
 DRIFT = Disturbances(bias_drift=0.6, drift_period=90.0)
 DRIFTED, DRIFTING = Trip("city", 14 * MINUTE, faults=DRIFT), Trip("city", 20 * MINUTE, faults=DRIFT)
+CRASHED = Trip("city", 10 * MINUTE, hit_at=9.5 * MINUTE, rate=50.0)
+HURRIED, HURRYING = Trip("harsh", 12 * MINUTE, rate=50.0), Trip("harsh", 30 * MINUTE, rate=50.0)
 LOSING_GPS = Trip("city", 50 * MINUTE, no_fix_from=15 * MINUTE)
 WITHOUT_GPS = Trip("city", 30 * MINUTE, no_fix_from=0.0)
 SET_BACK = Trip("city", 10 * MINUTE, set_back=(9.5 * MINUTE, 90.0))
@@ -74,6 +76,9 @@ FLEET = (
     Vehicle("van-105", "Van in a jam", "Mercedes Sprinter", 2, ("settling", "calibration_stalled"), JAM, JAM),
     Vehicle("car-207", "Taxi with a broken antenna", "Toyota Prius", 4, ("gps_lost",), LOSING_GPS, WITHOUT_GPS),
     Vehicle("lorry-301", "Lorry whose clock is set back", "MAN TGM", 5, ("clock_fault",), SET_BACK, SET_BACK),
+    # Driven badly.
+    Vehicle("car-208", "Car that had a crash", "Ford Focus", 2, ("impact",), CRASHED, YARD),
+    Vehicle("van-108", "Courier in a hurry", "VW Crafter", 4, ("harsh_driving",), HURRIED, HURRYING),
     # As they should be.
     Vehicle("lorry-302", "Lorry on the motorway", "Iveco S-Way", 7, ("confirmed",), DAY_ON_MOTORWAY, MOTORWAY),
     Vehicle("van-106", "Parcel van in town", "Renault Master", 8, ("confirmed",), DAY_IN_TOWN, TOWN),

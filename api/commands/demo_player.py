@@ -9,7 +9,7 @@ from threading import Event, Thread
 
 from api.commands.demo_desk import keep_desk
 from api.commands.demo_fleet import FLEET, Vehicle
-from api.commands.demo_trips import FOREVER, RATE, Recorder, Trip, pieces
+from api.commands.demo_trips import FOREVER, Recorder, Trip, pieces
 from api.commands.device import Device, RefusedError, Service, UnavailableError, register
 from api.formats import native_csv
 from api.formats.writer import write_native_csv
@@ -99,7 +99,7 @@ class Player:
         device = self._power_up(own)
         due = time.monotonic()
         for piece in self._record(trip, POST_EVERY):
-            due += len(piece) / RATE
+            due += len(piece) / trip.rate
             if self.end.wait(max(0.0, due - time.monotonic())):
                 return
             device.send(write_native_csv(piece))

@@ -3,16 +3,21 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from math import radians
 
 import numpy as np
 
 from core import Samples, quaternion
 from core.simulation import Scenario, simulate
+from core.simulation_events import Crash, crash
 from core.simulation_faults import Disturbances, Rotation
+from core.simulation_motion import GRAVITY
 
 RATE = 25.0
 """Hz of the accelerometer: less than that of most devices, because one machine drives the whole fleet"""
 FOREVER = 1e9
+HIT = Crash(0.0, radians(40.0), 9 * GRAVITY, 0.1)
+"""from the front left"""
 KNOCK = (20.0, 50.0)
 """degrees by which a device gets turned"""
 
@@ -28,12 +33,16 @@ class Trip:
     """when the device is turned against the vehicle"""
     set_back: tuple[float, float] = (FOREVER, 0.0)
     """when the device's clock is set back, and by how many s"""
+    hit_at: float = FOREVER
+    """when another vehicle drives into it"""
+    rate: float = RATE
+    """Hz of the accelerometer; impacts are told from 45 Hz on"""
     faults: Disturbances = field(default_factory=Disturbances)
 
     @property
     def incidents(self) -> tuple[float, ...]:
         """Give the moments at which something goes wrong."""
-        return (self.no_fix_from, *self.knocked_at, self.set_back[0])
+        return (self.no_fix_from, *self.knocked_at, self.set_back[0], self.hit_at)
 
 
 class Recorder:
@@ -57,7 +66,7 @@ class Recorder:
             trip.seconds,
             self._seed,
             self.mount,
-            imu_rate=RATE,
+            imu_rate=trip.rate,
             outages=((trip.no_fix_from, FOREVER),),
             disturbances=replace(trip.faults, knocks=knocks),
             session=self._trips,
@@ -65,7 +74,8 @@ class Recorder:
         self._trips += 1
         for _, turn in knocks:
             self.mount = quaternion.normalise(quaternion.multiply(self.mount, quaternion.from_rotation_vector(turn)))
-        return simulate(scenario).samples
+        drive = simulate(scenario)
+        return drive.samples if trip.hit_at > trip.seconds else crash(drive, HIT._replace(t=trip.hit_at), self._rng)
 
     def _knock(self) -> Rotation:
         """Draw a turn about any axis."""

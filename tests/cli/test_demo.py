@@ -121,7 +121,7 @@ def test_the_fleet_is_here_for_every_stage_and_every_alert() -> None:
 def test_each_vehicle_drives_as_it_should(vehicle: Vehicle, trip: Trip) -> None:
     samples = Recorder(vehicle.seed).record(trip)
     fixes = samples.t[samples.fix_row]
-    assert len(samples) == pytest.approx(trip.seconds * RATE, abs=2)
+    assert len(samples) == pytest.approx(trip.seconds * trip.rate, abs=2)
     assert np.array_equal(samples.fix_valid, fixes < trip.no_fix_from)
     moving = samples.fix[samples.fix_valid, 3] > 1.5
     assert np.any(moving) == (trip.route != "parked" and trip.no_fix_from > 0)
