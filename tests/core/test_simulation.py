@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 EXACT = Scenario(seconds=120, ideal=True, vibration=0, gyro=True, latency=0, lever_arm=(0, 0, 0))
 HARD = {"constant", "steep", "crawl", "towed", "ferry"}
 """looked at in test_simulation_faults"""
-MOVING = sorted(set(ROUTES) - HARD - {"parked"})
+MOVING = sorted(set(ROUTES) - HARD - {"parked", "harsh"})
 
 
 def in_vehicle(drive: Drive, x_s: Floats) -> Floats:
