@@ -85,8 +85,8 @@ def drift(
 ) -> tuple[Floats, Floats]:
     """Give what must be added to the integrated rate, (N,) rad, and its 1 sigma, (N,) rad."""
     size = interval_size(pair, params)
-    known: Booleans = np.isfinite(_blocks(rate, size)).all(axis=1)
-    resting: Booleans = _blocks(rest.resting, size).all(axis=1)
+    known = np.asarray(np.isfinite(_blocks(rate, size)).all(axis=1), np.bool_)
+    resting = np.asarray(_blocks(rest.resting, size).all(axis=1), np.bool_)
     mean_rate = _blocks(np.nan_to_num(rate), size).mean(axis=1)
     middle = _blocks(integrated, size).mean(axis=1)
     seen = Seen(known, resting, mean_rate, compared.angle - middle, compared.sigma)
