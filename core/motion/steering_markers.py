@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from core.motion.steering_figure import TRUSTED_HITS, Figure, Pose, fit_pose, search
+from core.motion.steering_figure import Figure, Pose, fit_pose, search
 from core.motion.steering_rectification import Sighting, learn, rectified, rotation_between
 from core.motion.steering_terms import Complexes, Floats, Steering, SteeringError
 
@@ -59,8 +59,9 @@ EXTRAPOLATED = 0.2
 """s for which the rate of turning is carried on"""
 MOST_PARTS = 4
 """between breaks that are looked at"""
-RARE = 0.1
-"""of the frames of the most frequent marker; what is seen more rarely is none"""
+RARE = 0.35
+"""of the rotations at which the most frequent marker is seen; what is seen at fewer is none"""
+ROTATION_BIN = radians(8.0)
 
 
 class Markers(NamedTuple):
@@ -149,19 +150,25 @@ class _Learned(NamedTuple):
 def _learned(sightings: list[Sighting], known: Figure) -> _Learned:
     """Find view and figure, without what was rarely there, from frames in which it is known which marker is which."""
     view = learn(sightings, known.size)
-    total, count = np.zeros(known.size, np.complex128), np.zeros(known.size, int)
-    for sighting in sightings:
+    total, count = np.zeros(known.size, np.complex128), np.zeros(known.size)
+    for sighting, weight in zip(sightings, _rarity(sightings), strict=True):
         flat, figure = rectified(view, sighting.point), known.point[sighting.member]
-        total[sighting.member] += fit_pose(figure, flat, sighting.rotation).taken_back(flat)
-        count[sighting.member] += 1
-    kept = count >= max(1.0, RARE * count.max(initial=0))
-    mean, miss = total / np.maximum(count, 1), []
+        total[sighting.member] += weight * fit_pose(figure, flat, sighting.rotation).taken_back(flat)
+        count[sighting.member] += weight
+    kept = count >= RARE * count.max(initial=0)
+    mean, miss = total / np.maximum(count, 1e-9), []
     for sighting in sightings:
         flat, figure = rectified(view, sighting.point), mean[sighting.member]
         placed = fit_pose(figure, flat, sighting.rotation).placed(figure)
         miss.append(np.sqrt((np.abs(placed - flat) ** 2).mean()))
-    figure = Figure(mean[kept], count[kept] + TRUSTED_HITS, np.zeros(int(kept.sum()), int))
-    return _Learned(view, figure, float(np.median(miss)))
+    return _Learned(view, Figure.of(mean[kept]), float(np.median(miss)))
+
+
+def _rarity(sightings: list[Sighting]) -> Floats:
+    """(F,) weights by which every rotation counts the same: a lamp in the dashboard goes with a straight wheel only."""
+    bins = np.round(np.array([s.rotation for s in sightings]) / ROTATION_BIN).astype(int)
+    _, which, frequency = np.unique(bins, return_inverse=True, return_counts=True)
+    return np.asarray(1.0 / frequency[which], np.float64)
 
 
 def _acquired(t: Floats, frames: list[Complexes], params: MarkerParameters) -> _Learned:
