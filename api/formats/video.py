@@ -2,7 +2,8 @@
 
 OpenCV is needed, the extra `video`; it is loaded when the first film is read. Frames are read one by one and forgotten.
 Markers are found by their colour in the plane of a and b of CIE Lab, where a change of light moves a colour towards
-grey or away from it but hardly to another hue. The camera's shaking shows in the cabin around the wheel and is taken out.
+grey or away from it but hardly to another hue. The camera's shaking shows in the cabin around
+the wheel and is taken out.
 """
 
 from collections.abc import Callable, Iterator
@@ -36,14 +37,19 @@ ROUNDNESS = 0.5
 FILLED = (0.6, 0.9)
 """of the smallest rectangle around it: an ellipse fills pi / 4, a rectangle all of it"""
 MOST_BLOBS = 24
+LEAST_MARKERS = 3
 MOST_MARKERS = 12
 """more spots of one hue in a frame are no markers but a pattern"""
-LOOKED_AT = 30
-"""frames from which the hue is chosen when it is not given"""
+LOOKED_AT = 90
+"""frames at the start from which the hue and the frame that all are held against are chosen"""
+LOOKED_AT_EVERY = 9
 WHEEL_SHARE = 2.4
 """radius around the markers, by that of their figure, beyond which the cabin begins"""
 LEAST_CORNERS = 10
 CORNERS = 120
+PATCH = (13, 13)
+LEAST_LIKENESS = 0.85
+"""correlation of a corner's surroundings with what they were"""
 
 
 @dataclass(frozen=True)
@@ -109,14 +115,12 @@ def read_markers(
     cv2 = _opencv()
     with path.open("rb"):
         pass  # OpenCV does not say why it cannot open a file
-    colour = colour or _colour(cv2, path, limits)
+    colour, cabin = _first_look(cv2, path, colour, limits)
     times: list[float] = []
     points: list[Floats] = []
-    cabin, steadied = None, 0
+    steadied = 0
     for t, duration, image in _frames(cv2, path, limits):
-        spots = _spots(cv2, image, HUES[colour])
-        if cabin is None and len(spots) >= 3:
-            cabin = _Cabin(cv2, image, spots)
+        spots = _spots(cv2, image, HUES[colour])[:, :2]
         steady = cabin.steady(image, spots) if cabin else None
         steadied += steady is not None
         times.append(t)
@@ -133,7 +137,9 @@ def _opencv() -> ModuleType:
     return cv2
 
 
-def _frames(cv2: ModuleType, path: Path, limits: FilmLimits) -> Iterator[tuple[float, float, Image]]:
+def _frames(
+    cv2: ModuleType, path: Path, limits: FilmLimits, most: int | None = None
+) -> Iterator[tuple[float, float, Image]]:
     """Give time (s), duration (s) and picture of each frame, reduced to the widest that is looked at."""
     film = cv2.VideoCapture(str(path))
     try:
@@ -144,7 +150,7 @@ def _frames(cv2: ModuleType, path: Path, limits: FilmLimits) -> Iterator[tuple[f
         if width * height > limits.pixels or total > limits.frames:
             raise FormatError.too_large(f"expected at most {limits.pixels} pixels a frame and {limits.frames} frames")
         scale, last = min(limits.width / max(width, 1.0), 1.0), -np.inf
-        for k in range(limits.frames):
+        for k in range(most or limits.frames):
             good, image = film.read()
             if not good:
                 break
@@ -162,26 +168,32 @@ def _no_film(expected: str) -> FormatError:
     return FormatError.unreadable(Problem(None, None, expected, f"expected {expected}"))
 
 
-def _colour(cv2: ModuleType, path: Path, limits: FilmLimits) -> str:
-    """Choose the colour of which the first second shows most round spots, frame by frame."""
-    counts = []
-    for k, (_, _, image) in enumerate(_frames(cv2, path, limits)):
-        if k >= LOOKED_AT:
-            break
-        if k % 3 == 0:
-            counts.append(
-                [
-                    len(spots) if 3 <= len(spots := _spots(cv2, image, hue)) <= MOST_MARKERS else 0
-                    for hue in HUES.values()
-                ]
-            )
-    if np.median(counts, axis=0).max() < 3.0:
-        raise _no_film("at least three round coloured markers in the first second")
-    return list(HUES)[int(np.argmax(np.mean(counts, axis=0)))]
+def _first_look(cv2: ModuleType, path: Path, colour: str | None, limits: FilmLimits) -> "tuple[str, _Cabin | None]":
+    """Choose the colour of which the first seconds show most and most colourful round spots, and the clearest cabin."""
+    images = [
+        image for k, (_, _, image) in enumerate(_frames(cv2, path, limits, LOOKED_AT)) if k % LOOKED_AT_EVERY == 0
+    ]
+    worth = {
+        name: [_worth(_spots(cv2, image, HUES[name])) for image in images] for name in ([colour] if colour else HUES)
+    }
+    if max(map(np.median, worth.values())) == 0:
+        raise _no_film("at least three round coloured markers in the first seconds")
+    chosen = max(worth, key=lambda name: sum(worth[name]))
+    shown = [
+        _Cabin(cv2, image, _spots(cv2, image, HUES[chosen])[:, :2])
+        for image, w in zip(images, worth[chosen], strict=True)
+        if w
+    ]
+    best = max(shown, key=lambda cabin: cabin.corners)
+    return chosen, best if best.corners >= LEAST_CORNERS else None
+
+
+def _worth(spots: Floats) -> float:
+    return float(spots[:, 2].sum()) if LEAST_MARKERS <= len(spots) <= MOST_MARKERS else 0.0
 
 
 def _spots(cv2: ModuleType, image: Image, hue: float) -> Floats:
-    """(K, 2) centres of the round spots of a hue, px."""
+    """(K, 3) centres of the round spots of a hue, px, and how far they are from grey."""
     lab = cv2.cvtColor(cv2.GaussianBlur(image, (3, 3), 0), cv2.COLOR_BGR2Lab)
     a, b = lab[..., 1].astype(np.float32) - 128, lab[..., 2].astype(np.float32) - 128
     along = a * np.float32(np.cos(np.radians(hue))) + b * np.float32(np.sin(np.radians(hue)))
@@ -189,15 +201,15 @@ def _spots(cv2: ModuleType, image: Image, hue: float) -> Floats:
     chroma = np.where(np.abs(across) < HUE_WIDTH * along, along, np.float32(0))
     lit = chroma[chroma > LEAST_CHROMA]
     if lit.size < LEAST_PIXELS:
-        return np.empty((0, 2))
+        return np.empty((0, 3))
     level = max(LEAST_CHROMA, CHROMA_SHARE * float(np.percentile(lit, 90)))
     contours, _ = cv2.findContours((chroma > level).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     found = [(area, spot) for c in contours for area, spot in _spot(cv2, c, chroma, level)]
     found.sort(key=lambda pair: -pair[0])
-    return np.array([spot for _, spot in found[:MOST_BLOBS]]).reshape(-1, 2)
+    return np.array([spot for _, spot in found[:MOST_BLOBS]]).reshape(-1, 3)
 
 
-def _spot(cv2: ModuleType, contour: Any, chroma: Image, level: float) -> list[tuple[float, tuple[float, float]]]:
+def _spot(cv2: ModuleType, contour: Any, chroma: Image, level: float) -> list[tuple[float, tuple[float, float, float]]]:
     """Area and centre of a contour, weighted by the chroma, if it is a round spot; one or none."""
     x, y, width, height = cv2.boundingRect(contour)
     around = cv2.arcLength(contour, True)
@@ -212,11 +224,12 @@ def _spot(cv2: ModuleType, contour: Any, chroma: Image, level: float) -> list[tu
     moments = cv2.moments(weight)
     if not moments["m00"]:
         return []
-    return [(area, (x + moments["m10"] / moments["m00"], y + moments["m01"] / moments["m00"]))]
+    strength = level + moments["m00"] / area
+    return [(area, (x + moments["m10"] / moments["m00"], y + moments["m01"] / moments["m00"], strength))]
 
 
 class _Cabin:
-    """What surrounds the wheel in the first frame: against it the camera's shaking shows."""
+    """What surrounds the wheel in one of the first frames: against it the camera's shaking shows."""
 
     def __init__(self, cv2: ModuleType, image: Image, spots: Floats) -> None:
         self._cv2 = cv2
@@ -225,27 +238,36 @@ class _Cabin:
         radius = WHEEL_SHARE * float(np.median(np.linalg.norm(spots - centre, axis=1)))
         mask = np.full(self._first.shape, 255, np.uint8)
         cv2.circle(mask, tuple(np.round(centre).astype(int).tolist()), int(radius), 0, -1)
-        corners = cv2.goodFeaturesToTrack(self._first, CORNERS, 0.01, 8, mask=mask)
+        corners = cv2.goodFeaturesToTrack(self._first, CORNERS, 0.005, 8, mask=mask)
         self._corners = np.empty((0, 1, 2), np.float32) if corners is None else corners
+        self._patches = self._normal_patches(self._first, self._corners)
         self._last = self._corners.copy()
+        self.corners = len(self._corners)
 
     def _grey(self, image: Image) -> Image:
         grey: Image = self._cv2.equalizeHist(self._cv2.cvtColor(image, self._cv2.COLOR_BGR2GRAY))
         return grey
 
+    def _normal_patches(self, grey: Image, corners: Image) -> Floats:
+        """(C, P) surroundings of the corners, of zero mean and unit length."""
+        patches = [self._cv2.getRectSubPix(grey, PATCH, tuple(corner.tolist())).ravel() for corner in corners[:, 0]]
+        raw = np.array(patches, np.float64).reshape(len(corners), PATCH[0] * PATCH[1])
+        raw -= raw.mean(axis=1, keepdims=True)
+        return np.asarray(raw / np.maximum(np.linalg.norm(raw, axis=1, keepdims=True), 1e-9), np.float64)
+
     def steady(self, image: Image, spots: Floats) -> Floats | None:
         """Give places in a frame as they would be had the camera not moved; None where the cabin does not show it."""
-        if len(self._corners) < LEAST_CORNERS:
-            return None
-        cv2 = self._cv2
+        cv2, grey = self._cv2, self._grey(image)
         there, known, _ = cv2.calcOpticalFlowPyrLK(
-            self._first, self._grey(image), self._corners, self._last.copy(), flags=cv2.OPTFLOW_USE_INITIAL_FLOW
+            self._first, grey, self._corners, self._last.copy(), flags=cv2.OPTFLOW_USE_INITIAL_FLOW
         )
-        good = known.ravel() == 1
+        # where the light washed everything out, corners stay where they were last and agree with each other
+        alike = (self._normal_patches(grey, there) * self._patches).sum(axis=1) > LEAST_LIKENESS
+        good = (known.ravel() == 1) & alike
         if good.sum() < LEAST_CORNERS:
             return None
         back, inside = cv2.estimateAffinePartial2D(there[good], self._corners[good], ransacReprojThreshold=1.5)
-        if back is None or inside.sum() < LEAST_CORNERS or abs(np.hypot(back[0, 0], back[1, 0]) - 1) > 0.03:
+        if back is None or inside.sum() < max(LEAST_CORNERS, good.sum() / 2):
             return None
         forth = cv2.invertAffineTransform(back)
         self._last = (self._corners @ forth[:, :2].T + forth[:, 2]).astype(np.float32)

@@ -41,7 +41,7 @@ class Film:
     """px, 1 sigma of the camera's shifts at 640 px width"""
     roll: float = radians(0.5)
     """rad, 1 sigma of its turning about the line of sight"""
-    light: float = 0.35
+    light: float = 0.3
     """by which the light changes, 1 sigma of the logarithm of its strength"""
     noise: float = 6.0
     """grey levels, 1 sigma"""
