@@ -130,6 +130,49 @@ def characterise(
 
 
 @app.command()
+def steering(
+    source: Annotated[
+        Path, typer.Argument(metavar="VIDEO|LOG", help="Film of the wheel, or log of the vehicle.", show_default=False)
+    ],
+    wheel: Annotated[
+        Path | None, typer.Option("--wheel", "--second", help="Log of the device on the wheel.", show_default=False)
+    ] = None,
+    log: Annotated[Path | None, typer.Option(help="With a film: log of the vehicle.", show_default=False)] = None,
+    video_start: Annotated[
+        float | None, typer.Option(help="Time of the first frame on the log's clock, s. [default: from the yaw rate]")
+    ] = None,
+    straight: Annotated[
+        float | None,
+        typer.Option(help="Time at which the wheel is straight, s. [default: from the drive, or the start]"),
+    ] = None,
+    from_behind: Annotated[
+        bool, typer.Option("--from-behind", help="The camera sees the wheel from the windscreen.")
+    ] = False,
+    colour: Annotated[
+        Literal["red", "orange", "yellow", "green", "cyan", "blue", "pink"] | None,
+        typer.Option(help="Colour of the markers; found out if not given."),
+    ] = None,
+    log_format: LogFormat = None,
+    every: Annotated[float, typer.Option(min=0.001, help="Seconds between the angles that are printed.")] = 1.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object on each line.")] = False,
+    out: Annotated[
+        Path | None, typer.Option("--output", help="Write LOG as native CSV with a column `steer`.", show_default=False)
+    ] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the angle, .png, .svg or .pdf.", show_default=False)] = None,
+) -> None:
+    """Find the steering-wheel angle from a second device on the wheel, or from a film of markers on it.
+
+    Exit status 2 when a file cannot be read or does not show the angle.
+    """
+    from api.commands import steering as command
+    from api.formats.files import Format
+
+    chosen = log_format and Format(log_format)
+    options = (wheel, log, video_start, straight, from_behind, colour, chosen, every, as_json, out, plot)
+    command.run(source, command.Options(*options))
+
+
+@app.command()
 def simulate(
     out: Annotated[Path, typer.Argument(help="Log to write, .csv or .csv.gz.", show_default=False)],
     route: Annotated[

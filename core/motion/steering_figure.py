@@ -93,7 +93,7 @@ def fit_pose(figure: Complexes, points: Complexes, near: float) -> Pose:
     return Pose(angle, complex(points.mean() - figure.mean() * np.exp(1j * angle)))
 
 
-def search(figure: Complexes, points: Complexes, near: float, gate: float) -> Pose | None:
+def search(figure: Complexes, points: Complexes, near: float, gate: float, nearness: float = NEARNESS) -> Pose | None:
     """Find the figure in a frame at any rotation: each pair of its points on each pair of the frame's is tried.
 
     The pose that explains most points best; among equals, as with markers at even distances, that nearest to `near`.
@@ -114,6 +114,6 @@ def search(figure: Complexes, points: Complexes, near: float, gate: float) -> Po
     miss = np.abs(placed[:, :, None] - points[None, None, :]).min(axis=2)
     cost = np.minimum(miss / gate, 1.0) ** 2  # of a point that is not there: 1, however far the next one is
     away = np.abs((np.angle(turn) - near + np.pi) % (2 * np.pi) - np.pi)
-    best = int(np.argmin(cost.sum(axis=1) + NEARNESS * away))
+    best = int(np.argmin(cost.sum(axis=1) + nearness * away))
     angle = float(np.angle(turn[best]))
     return Pose(angle + 2 * np.pi * round((near - angle) / (2 * np.pi)), complex(shift[best]))

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from core.motion.steering_figure import Figure, Pose, fit_pose, search
+from core.motion.steering_figure import NEARNESS, Figure, Pose, fit_pose, search
 from core.motion.steering_rectification import Sighting, learn, rectified, rotation_between
 from core.motion.steering_terms import Complexes, Floats, Steering, SteeringError
 
@@ -40,6 +40,8 @@ class MarkerParameters:
     """markers that must be seen; two would do, but could not be told from false ones"""
     share: float = 0.6
     """of the markers that make a match sure"""
+    plenty: float = 0.75
+    """of the markers that make it needless to look elsewhere"""
     passes: int = 2
     """times all frames are gone through, each with the view that was learned before"""
     surprise: float = radians(25.0)
@@ -211,8 +213,8 @@ def _follow(
     sightings: list[Sighting] = []
     motion = _Motion(Pose(0.0, 0j), 0.0, -np.inf)
     for k in range(t.size):
-        flat, lost = rectified(view, frames[k]), t[k] - motion.t > params.patience
-        for pose, member, which, miss in _match(figure, flat, motion.predicted(t[k]), gate, params, lost):
+        flat = rectified(view, frames[k])
+        for pose, member, which, miss in _match_anywhere(figure, flat, motion, float(t[k]), gate, params):
             motion = motion.then(pose, float(t[k]), params.fastest)
             rotation[k], misfit[k] = pose.rotation, miss
             sightings.append(Sighting(k, member, frames[k][which], pose.rotation))
@@ -245,12 +247,10 @@ _Match = tuple[Pose, np.ndarray, np.ndarray, float]
 """pose of the figure in a frame, which members are seen in which points, and by how much they miss"""
 
 
-def _match(
-    figure: Figure, flat: Complexes, predicted: Pose, gate: float, params: MarkerParameters, lost: bool = False
-) -> list[_Match]:
-    """Find the figure in a frame, near the prediction or, if it is lost, anywhere; one match or none.
+def _match(figure: Figure, flat: Complexes, predicted: Pose, gate: float, params: MarkerParameters) -> list[_Match]:
+    """Find the figure in a frame near the prediction; one match or none.
 
-    A match of few markers must be near the prediction and close: three false ones fit somewhere by chance.
+    A match of few markers must be close: three false ones fit somewhere by chance.
     """
     wanted = max(params.least, round(params.share * figure.trusted.size))
     trials: list[_Match] = []
@@ -260,9 +260,22 @@ def _match(
         if trials and trials[-1][1].size >= wanted:
             return trials[-1:]
     trials = [m for m in trials if m[3] < min(gate, params.gates[1]) / 8]
-    if lost and (pose := search(figure.point[figure.trusted], flat, predicted.rotation, gate)):
-        trials += [m for m in _settle(figure, flat, pose, gate, params) if m[1].size >= wanted]
     return sorted(trials, key=lambda m: -m[1].size * (1 - (m[3] / gate) ** 2))[:1]
+
+
+def _match_anywhere(
+    figure: Figure, flat: Complexes, motion: _Motion, t: float, gate: float, params: MarkerParameters
+) -> list[_Match]:
+    """Find the figure near the prediction, or anywhere if that explains two markers more, or the prediction is old."""
+    trusted, lost = figure.trusted, t - motion.t > params.patience
+    near = [] if lost else _match(figure, flat, motion.predicted(t), gate, params)
+    if near and near[0][1].size >= params.plenty * trusted.size:
+        return near
+    nearness = NEARNESS if np.isfinite(motion.t) else 0.0
+    pose = search(figure.point[trusted], flat, motion.predicted(t).rotation, gate, nearness)
+    enough = near[0][1].size + 2 if near else max(params.least, round(params.share * trusted.size))
+    other = _settle(figure, flat, pose, gate, params) if pose and (near or lost) else []
+    return other if other and other[0][1].size >= enough else near
 
 
 def _settle(figure: Figure, flat: Complexes, pose: Pose, gate: float, params: MarkerParameters) -> list[_Match]:

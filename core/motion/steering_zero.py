@@ -3,7 +3,8 @@
 import numpy as np
 from scipy.optimize import least_squares
 
-from core.motion.steering_terms import Floats
+from core.motion.steering_clocks import averages, even_raster
+from core.motion.steering_terms import Booleans, Floats, Steering, SteeringError
 from core.samples import SPEED, Samples
 
 LEAST_SECONDS = 20.0
@@ -12,6 +13,12 @@ LARGEST_ANGLE = np.radians(120.0)
 """rad from the median beyond which the angle is no longer in proportion to the curvature"""
 LARGEST_YAW_RATE = 0.25
 """rad/s"""
+START_RATE = 20.0
+"""Hz at which a film is held against a log"""
+START_SPEED = 3.0
+"""m/s beyond which the yaw rate shows the steering"""
+LEAST_AGREEMENT = 0.6
+"""correlation of angle and curvature"""
 
 
 def speed_at(samples: Samples, t: Floats) -> Floats:
@@ -55,3 +62,41 @@ def straight_angle(
 def _line_misfit(p: Floats, columns: Floats, angle: Floats) -> Floats:
     misfit: Floats = columns @ p - angle
     return misfit
+
+
+def find_start(samples: Samples, steering: Steering) -> float:
+    """Find when a film began on the clock of a log, s: where the yaw rate goes with steering angle times speed.
+
+    Raises
+    ------
+    SteeringError
+        the log has no gyroscope or no speeds, or it does not go with the film.
+    """
+    raster = even_raster(samples.t, START_RATE)
+    yaw = yaw_rate(*(averages(samples.t, x, raster) for x in (samples.f_s, samples.w_s)))
+    speed = np.nan_to_num(speed_at(samples, raster))
+    known = np.isfinite(steering.angle)
+    if not np.isfinite(yaw).any() or not speed.any() or known.sum() < 2:
+        raise SteeringError("The log shows no yaw rate or no speed, by which the film's start could be found.")
+    film = np.arange(steering.t[0], steering.t[-1], 1 / START_RATE)
+    angle = np.interp(film, steering.t[known], steering.angle[known])
+    # curvature where the vehicle moves; elsewhere it says nothing
+    moving = speed > START_SPEED
+    curvature = np.where(moving, np.nan_to_num(yaw) / np.maximum(speed, START_SPEED), 0.0)
+    value = [_agreement(angle, curvature[k : k + film.size], moving[k : k + film.size]) for k in _lags(raster, film)]
+    if not value or max(value) < LEAST_AGREEMENT:
+        raise SteeringError("The film does not go with the log: say when it began with --video-start.")
+    return float(raster[int(np.argmax(value))] - steering.t[0])
+
+
+def _lags(raster: Floats, film: Floats) -> range:
+    return range(max(raster.size - film.size + 1, 0))
+
+
+def _agreement(angle: Floats, curvature: Floats, moving: Booleans) -> float:
+    """Correlation of angle and curvature while the vehicle moves."""
+    if moving.sum() < max(LEAST_SECONDS * START_RATE / 2, 0.3 * moving.size):
+        return -1.0
+    a, c = angle[moving], curvature[moving]
+    a, c = a - a.mean(), c - c.mean()
+    return float(a @ c / max(float(np.linalg.norm(a) * np.linalg.norm(c)), 1e-12))

@@ -8,7 +8,19 @@ from typer.testing import CliRunner
 from api.cli import app
 
 COMMANDS = [
-    *("serve", "replay", "calibrate", "attitude", "characterise", "simulate", "upload", "demo", "keys", "db"),
+    *(
+        "serve",
+        "replay",
+        "calibrate",
+        "attitude",
+        "characterise",
+        "steering",
+        "simulate",
+        "upload",
+        "demo",
+        "keys",
+        "db",
+    ),
     "openapi",
 ]
 
