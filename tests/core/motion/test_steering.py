@@ -9,8 +9,8 @@ from core.motion import steering_alignment, steering_fusion
 from core.motion.steering import DEFAULT, SteeringError, TwoDevices, two_devices
 from core.motion.steering_alignment import Pair
 from core.motion.steering_clocks import averages
-from core.motion.steering_terms import Floats
-from core.motion.steering_zero import straight_angle
+from core.motion.steering_terms import Floats, Steering
+from core.motion.steering_zero import find_start, straight_angle
 from core.simulation_motion import GRAVITY
 from core.simulation_steering import SteeringDrive, SteeringScenario, simulate_steering
 
@@ -129,6 +129,14 @@ def test_straight_is_where_the_vehicle_goes_straight_on() -> None:
     zero, sigma = straight_angle(angle, yaw, speed, 0.02, 6.0) or (np.nan, np.nan)
     assert abs(zero - 0.1) < min(3 * sigma, 0.01)
     assert straight_angle(angle, yaw, np.full(4000, 2.0), 0.02, 6.0) is None
+
+
+def test_when_a_film_began_is_found_from_the_yaw_rate() -> None:
+    during = (FOUND.steering.t > 100.0) & (FOUND.steering.t < 180.0)
+    part = Steering(*(x[during] for x in FOUND.steering))
+    assert find_start(DRIVE.car, part._replace(t=part.t - part.t[0])) == pytest.approx(part.t[0], abs=0.5)
+    with pytest.raises(SteeringError, match="--video-start"):
+        find_start(DRIVE.car, part._replace(angle=np.sin(9.0 * part.t)))
 
 
 def test_what_is_missing_is_said() -> None:

@@ -8,7 +8,8 @@ from core.motion.steering_markers import from_markers
 from core.motion.steering_rectification import NONE, rectified, rotation_between
 from core.motion.steering_terms import Complexes, Floats, SteeringError
 
-FIGURE: Complexes = 0.13 * np.array([0.9, 1.0, 0.85, 0.95, 0.8, 1.0]) * np.exp(1j * np.radians([0, 47, 112, 171, 238, 297]))
+PLACES = np.radians([0.0, 47.0, 112.0, 171.0, 238.0, 297.0])
+FIGURE = np.asarray(0.13 * np.array([0.9, 1.0, 0.85, 0.95, 0.8, 1.0]) * np.exp(1j * PLACES), np.complex128)
 LAMP = np.array([[150.0, 150.0]])
 """px, something of the markers' colour that does not turn"""
 
@@ -57,8 +58,9 @@ def test_the_view_is_learned_and_matters() -> None:
     t, _, frames = film(0, tilt=radians(35))
     found = from_markers(t, frames)
     assert np.abs(found.view).max() > 0.05
-    flat = [z[:, 0] - 1j * z[:, 1] for z in frames]
-    assert np.isfinite(rectified(found.view, flat[0] / 100)).all()
+    circle = np.asarray(np.exp(1j * np.arange(8)), np.complex128)
+    np.testing.assert_array_equal(rectified(NONE, circle), circle)
+    assert np.ptp(np.abs(rectified(found.view, circle))) > 0.05
     straight_ahead = from_markers(*film(0, tilt=0.0)[::2])
     np.testing.assert_allclose(straight_ahead.view, NONE, atol=0.02)
 
