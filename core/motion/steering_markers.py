@@ -64,6 +64,10 @@ MOST_PARTS = 4
 RARE = 0.35
 """of the rotations at which the most frequent marker is seen; what is seen at fewer is none"""
 ROTATION_BIN = radians(8.0)
+FEWEST = 4
+"""markers of which none is left out for its misfit"""
+ODD_MISFIT, ODD_RATIO = 0.02, 2.0
+"""misfit of a marker, and by how much it is that of the usual one, that make it none"""
 
 
 class Markers(NamedTuple):
@@ -125,6 +129,8 @@ def from_markers(
         gate = float(np.clip(params.gate_misfits * start.misfit, *params.gates))
         done = _follow(t, frames, start.figure, start.view, gate, params)
         view = start.view
+        if not done.sightings:
+            break
         start = _learned(done.sightings, start.figure)
     if np.isfinite(done.rotation).mean() < 0.1:
         raise SteeringError("The markers of hardly any frame match those of the others: are they fixed to the wheel?")
@@ -150,20 +156,37 @@ class _Learned(NamedTuple):
 
 
 def _learned(sightings: list[Sighting], known: Figure) -> _Learned:
-    """Find view and figure, without what was rarely there, from frames in which it is known which marker is which."""
+    """Find view and figure from frames in which it is known which marker is which.
+
+    What was rarely there is no marker, nor is what misses its place by far more than the others: it does not turn
+    with the wheel, which was hardly turned.
+    """
     view = learn(sightings, known.size)
+    mean, kept = _mean_figure(sightings, known, view)
+    miss = np.full((len(sightings), known.size), np.nan)
+    for row, sighting in zip(miss, sightings, strict=True):
+        flat, figure = rectified(view, sighting.point), mean[sighting.member]
+        row[sighting.member] = np.abs(fit_pose(figure, flat, sighting.rotation).placed(figure) - flat)
+    own = np.array([np.sqrt(np.nanmean(column**2)) if keep else 0.0 for column, keep in zip(miss.T, kept, strict=True)])
+    worst = int(np.argmax(own))
+    if kept.sum() > FEWEST and own[worst] > max(ODD_MISFIT, ODD_RATIO * float(np.median(own[kept]))):
+        return _learned(_without(sightings, worst), known)
+    return _Learned(view, Figure.of(mean[kept]), float(np.nanmedian(np.sqrt(np.nanmean(miss**2, axis=1)))))
+
+
+def _without(sightings: list[Sighting], member: int) -> list[Sighting]:
+    rest = [(s, s.member != member) for s in sightings]
+    return [s._replace(member=s.member[k], point=s.point[k]) for s, k in rest if k.sum() >= 2]
+
+
+def _mean_figure(sightings: list[Sighting], known: Figure, view: Floats) -> tuple[Complexes, np.ndarray]:
+    """Places of the markers (M,) as a view shows them, and which are seen often enough (M,)."""
     total, count = np.zeros(known.size, np.complex128), np.zeros(known.size)
     for sighting, weight in zip(sightings, _rarity(sightings), strict=True):
         flat, figure = rectified(view, sighting.point), known.point[sighting.member]
         total[sighting.member] += weight * fit_pose(figure, flat, sighting.rotation).taken_back(flat)
         count[sighting.member] += weight
-    kept = count >= RARE * count.max(initial=0)
-    mean, miss = total / np.maximum(count, 1e-9), []
-    for sighting in sightings:
-        flat, figure = rectified(view, sighting.point), mean[sighting.member]
-        placed = fit_pose(figure, flat, sighting.rotation).placed(figure)
-        miss.append(np.sqrt((np.abs(placed - flat) ** 2).mean()))
-    return _Learned(view, Figure.of(mean[kept]), float(np.median(miss)))
+    return total / np.maximum(count, 1e-9), count >= RARE * count.max(initial=1e-9)
 
 
 def _rarity(sightings: list[Sighting]) -> Floats:

@@ -88,6 +88,17 @@ def test_what_happens_while_no_marker_is_seen_is_not_known_and_the_angle_comes_b
     assert rms(found.steering.angle - angle) < radians(0.5)
 
 
+def test_a_lamp_is_no_marker_even_if_the_wheel_is_hardly_turned() -> None:
+    t, _, _ = film(0)
+    rng = np.random.default_rng(8)
+    angle = radians(20) * np.sin(0.9 * t) * (t > 1)
+    noise = rng.normal(0, 0.3, (t.size, 6, 2)) + rng.normal(0, 3.0, (t.size, 1, 2))
+    frames = [np.vstack([seen(FIGURE * np.exp(1j * a), 0.4) + n, LAMP]) for a, n in zip(angle, noise, strict=True)]
+    found = from_markers(t, frames)
+    assert found.figure.size == 6
+    assert rms(found.steering.angle - angle) < radians(0.5)
+
+
 def test_an_order_of_the_points_means_nothing() -> None:
     t, _, frames = film(0)
     first, again = from_markers(t, frames), from_markers(t, [z[::-1] for z in frames])
