@@ -1,4 +1,4 @@
-"""Simulated handling manoeuvres: what a vehicle does near its limits, with the truth of sideslip, velocity and position.
+"""Simulated handling manoeuvres, up to the limits of the tyres, with the truth of sideslip, velocity and position.
 
     drive = simulate_handling(HandlingScenario("double_lane_change", level=0.6, seed=3))
     drive.samples                   what the device records
@@ -28,7 +28,6 @@ from core.simulation_motion import (
     PITCH_PER_ACCELERATION,
     Trajectory,
     smooth_noise,
-    turn,
     turn_back,
 )
 from core.simulation_sensors import (
@@ -270,8 +269,8 @@ def _record(
         turn_back(r_vs, motion.specific_force(arm) + shaking), scenario.imu_rate, sensor, errors, sensing
     )
     w_s = gyroscope(turn_back(r_vs, motion.w_v + rattling), scenario.imu_rate, sensor, errors, sensing)
-    offset = STEER_OFFSET * sensing.normal()
-    steer = scenario.vehicle.steering_ratio * np.interp(t, *wheel.T) + offset + STEER_NOISE * sensing.normal(size=t.size)
+    steer_error = STEER_OFFSET * sensing.normal() + STEER_NOISE * sensing.normal(size=t.size)
+    steer = scenario.vehicle.steering_ratio * np.interp(t, *wheel.T) + steer_error
     reported = np.arange(1 / scenario.gps_rate, t[-1], 1 / scenario.gps_rate)
     fix = _on_the_ellipsoid(gps_fixes(truth.trajectory, reported - scenario.latency, arm, Receiver(), receiving))
     valid = np.ones(reported.size, np.bool_)

@@ -17,8 +17,8 @@ EQUATOR, FLATTENING = 6378137.0, 0.0066943799901413
 """m and square of the eccentricity, WGS 84"""
 
 POSITION, VELOCITY, ATTITUDE, GYRO_BIAS, BIAS, ARM = 0, 3, 6, 9, 12, 15
-"""First index of each part of the error state: m east, north, up; m/s; rad about east, north, up; rad/s and m/s2 in vehicle
-axes; m ahead and to the left."""
+"""First index of each part of the error state: m east, north, up; m/s; rad about east, north, up; rad/s and m/s2 in
+vehicle axes; m ahead and to the left."""
 STATES = 17
 RING = 128
 """intervals of the past that are kept"""
@@ -103,7 +103,7 @@ def radii(latitude):
 
 @njit(cache=True, nogil=True)
 def rivals(w, dw, d, out):
-    """Out = dw x d + w x (w x d): the acceleration of a point of a rigid body less that of another, `d` before it (4)."""
+    """Out = dw x d + w x (w x d): acceleration of a point of a rigid body less that of another, `d` from it (4)."""
     along = w[0] * d[0] + w[1] * d[1] + w[2] * d[2]
     square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
     out[0] = dw[1] * d[2] - dw[2] * d[1] + w[0] * along - square * d[0]
@@ -153,7 +153,7 @@ def single_track(c, u, v, r, wheel):
 
 @njit(cache=True, nogil=True)
 def linearise(c, u, v, r, steer, out):
-    """Write the coefficients Q2, Q3, R2, R3, U2, U3, D2, D3, K2, K3 of (2) about a state, `steer` at the steering wheel."""
+    """Write Q2, Q3, R2, R3, U2, U3, D2, D3, K2, K3 of (2), linearised about a state; `steer` at the steering wheel."""
     a1, a2, m, iz, ratio = c["a1"], c["a2"], c["mass"], c["yaw_inertia"], c["steering_ratio"]
     force, moment, s1, s2 = single_track(c, u, v, r, steer / ratio)
     out[0] = -(s1 + s2) / (m * u)
@@ -281,7 +281,7 @@ def transition(r, f, w, dw, gyro, b):
 
 @njit(cache=True, nogil=True)
 def predict_covariance(cov, b, dt):
-    """Cov = F cov F', F = 1 + dt times the blocks; rows from the top down, since each needs those below as they were."""
+    """Cov = F cov F', F = 1 + dt times the blocks; from the top row down, since each needs those below as they were."""
     for _ in range(2):  # F cov, then again on the transpose
         for j in range(STATES):
             for i in range(3):
@@ -352,8 +352,10 @@ def look_back(s, t, v, place):
 
 @njit(cache=True, nogil=True)
 def note_fix(p, s):
-    """Complete the waiting fix from the one before: velocity from positions, the rate of the course. Gives the delay of
-    its velocity beyond the latency, and remembers it."""
+    """Complete the waiting fix from the one before, and remember it: velocity from positions, the rate of the course.
+
+    Gives the s by which its velocity is older than its position.
+    """
     fix, before, t = s["fix"], s["fix_place"], s["fix_t"]
     since, delay = t - s["fix_place_t"], 0.0
     placed = not (math.isnan(fix[0]) or math.isnan(fix[1]))
@@ -585,24 +587,24 @@ def road_force(c, s):
 
 
 @njit(cache=True, nogil=True)
-def rear_axle(p, c, u, r, dr, force):
-    """Lateral velocity and its sigma, from the rear axle's slip under the force that the motion shows.
-
-    Moments about the front axle: F2 (a1 + a2) = a1 m fy - Iz dr/dt; then v = a2 r - |u| tan(slip).
-    """
-    base = c["a1"] + c["a2"]
-    most = c["mass"] * GRAVITY * c["friction"] * c["a1"] / base
-    f2 = (c["a1"] * c["mass"] * force - c["yaw_inertia"] * dr) / base
-    slip, slope = axle_slip(f2, c["cornering_stiffness_2"], most)
-    doubt = math.hypot(p["slip"], p["slip_share"] * slip) + p["force_share"] * abs(f2) * (
-        slope - 1 / c["cornering_stiffness_2"]
-    )
+def rear_axle(p, c, u, r, force):
+    """Lateral velocity and its sigma, from the slip of the rear axle under the force F2 on it."""
+    most = c["mass"] * GRAVITY * c["friction"] * c["a1"] / (c["a1"] + c["a2"])
+    slip, slope = axle_slip(force, c["cornering_stiffness_2"], most)
+    near_limit = p["force_share"] * abs(force) * (slope - 1 / c["cornering_stiffness_2"])
+    doubt = math.hypot(p["slip"], p["slip_share"] * slip) + near_limit
     return c["a2"] * r - abs(u) * math.tan(slip), math.hypot(abs(u) * doubt, 0.02)
 
 
 @njit(cache=True, nogil=True)
+def rear_force(c, dr, force):
+    """F2 in N from the motion: moments about the front axle, F2 (a1 + a2) = a1 m fy - Iz dr/dt."""
+    return (c["a1"] * c["mass"] * force - c["yaw_inertia"] * dr) / (c["a1"] + c["a2"])
+
+
+@njit(cache=True, nogil=True)
 def step_bicycle(p, c, s, r, u, steer, dt):
-    """Dynamic single-track model (2): prediction with speed and steering, measurements of yaw rate and lateral force."""
+    """Dynamic single-track model (2): predict with speed and steering, correct with yaw rate and lateral force."""
     x, cov = s["bicycle"], s["bicycle_covariance"]
     force = road_force(c, s)
     if not s["bicycle_running"]:
@@ -624,8 +626,7 @@ def step_bicycle(p, c, s, r, u, steer, dt):
         x[0] += step * dv
         x[1] += step * dr
         spread_bicycle(p, cov, k, step)
-    _, _, s1, s2 = single_track(c, u, x[0], x[1], steer / c["steering_ratio"])
-    modelled, _, _, _ = single_track(c, u, x[0], x[1], steer / c["steering_ratio"])
+    modelled, _, s1, s2 = single_track(c, u, x[0], x[1], steer / c["steering_ratio"])
     h, dx = np.zeros(2), np.zeros(2)
     h[1] = 1.0
     update(cov, dx, h, s["w_v"][2] - x[1], correlated(p["bicycle_rate"] ** 2, p["constraint_interval"], dt))
@@ -648,15 +649,14 @@ def spread_bicycle(p, cov, k, dt):
 
 @njit(cache=True, nogil=True)
 def constrain(p, c, s, r, gyro):
-    """Measurements nobody makes: the lateral velocity the tyres allow, no velocity off the road, nothing at standstill."""
+    """Measurements nobody makes: lateral velocity as tyres allow it, none off the road, nothing at standstill."""
     cov, v, w, h, dx = s["covariance"], s["v_n"], s["w_v"], np.empty(STATES), np.zeros(STATES)
-    interval, correlation = p["constraint_interval"], p["constraint_correlation"]
+    interval = p["constraint_interval"]
+    correlation = p["constraint_correlation"] + min(s["t"] - s["last_fix_t"], p["outage_correlation"])
     u = body_row(r, v, 0, h)
+    expected, sigma = rear_axle(p, c, u, w[2], rear_force(c, s["dw_v"][2], road_force(c, s)))
     if s["bicycle_running"]:
-        expected = s["bicycle"][0]
-        sigma = math.sqrt(s["bicycle_covariance"][0, 0] + (p["slip"] * u) ** 2)
-    else:
-        expected, sigma = rear_axle(p, c, u, w[2], s["dw_v"][2], road_force(c, s))
+        expected, sigma = s["bicycle"][0], math.hypot(sigma, math.sqrt(s["bicycle_covariance"][0, 0]))
     lateral = body_row(r, v, 1, h)
     update(cov, dx, h, expected - lateral, correlated(sigma**2, correlation, interval))
     upward = body_row(r, v, 2, h)
@@ -809,7 +809,7 @@ def run(params, vehicle, state, r_vs, t, f_s, w_s, steer, fix_row, fix_valid, fi
     sum_f, sum_w = s["sum_f"], s["sum_w"]
     for i in range(t.shape[0]):
         if not t[i] <= s["sample_t"]:
-            interval = int(math.floor(t[i] * p["rate"] + 1e-6))
+            interval = math.floor(t[i] * p["rate"] + 1e-6)
             if s["count"] > 0 and interval != s["interval"]:
                 take_interval(p, c, s, r_vs, rows[count])
                 count += 1

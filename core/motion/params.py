@@ -64,11 +64,13 @@ class Parameters:
 
     constraint_interval: float = 0.1
     """s between two uses of what is known of vehicles: how they slide sideways, that they do not leave the road"""
-    constraint_correlation: float = 0.5
+    constraint_correlation: float = 0.6
     """s for which the errors of these stay the same"""
+    outage_correlation: float = 5.0
+    """s by which that grows while no fix comes: without fixes their errors add up"""
     slip: float = radians(0.25)
     """rad, least error of the slip angle that is expected of the rear axle"""
-    slip_share: float = 0.12
+    slip_share: float = 0.15
     """error of it in shares of it: the cornering stiffness is not known better"""
     force_share: float = 0.05
     """error of the axle's force in shares of it; near the friction limit it means much"""
