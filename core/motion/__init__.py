@@ -9,6 +9,7 @@ from core.motion.motion import Motion, Origin
 from core.motion.params import DEFAULT, Parameters
 from core.motion.reconstruct import advance, reconstruct
 from core.motion.state import State, initial_state
+from core.motion.static_start import StaticStart, static_start
 from core.motion.vehicle import VEHICLES, Vehicle, VehicleError, vehicle_from
 
 __all__ = [
@@ -18,10 +19,12 @@ __all__ = [
     "Origin",
     "Parameters",
     "State",
+    "StaticStart",
     "Vehicle",
     "VehicleError",
     "advance",
     "initial_state",
     "reconstruct",
+    "static_start",
     "vehicle_from",
 ]

@@ -495,11 +495,7 @@ def take_fix(p, c, s, r):
     t = s["fix_t"]
     delay = note_fix(p, s)
     if s["fix_speed"] < p["still_speed"]:
-        if math.isnan(s["rest_t"]):
-            s["rest_f"][:] = s["f_v"]
-        for i in range(3):
-            s["rest_f"][i] += 0.3 * (s["f_v"][i] - s["rest_f"][i])
-        s["rest_t"], s["impulse"] = t, 0.0
+        rest(p, s, t)
     if not s["running"]:
         start(p, c, s)
         return
@@ -510,12 +506,44 @@ def take_fix(p, c, s, r):
         keep_past(s, r)
     look_back(s, t - p["latency"] - delay, v, place)
     if take_velocity(p, s, r, v, dx):
+        stand(p, s, r, v, dx)
         s["doubted_since"] = np.nan
         fold(p, s, dx)
     elif math.isnan(s["doubted_since"]):
         s["doubted_since"] = t
     elif t - s["doubted_since"] > p["patience"]:
         s["running"] = False
+
+
+@njit(cache=True, nogil=True)
+def rest(p, s, t):
+    """Remember the force at rest; one that differs is of a vehicle that sets off before its fixes say so."""
+    force, mean, change = s["f_v"], s["rest_f"], 0.0
+    if math.isnan(s["rest_t"]):
+        mean[:] = force
+    for i in range(3):
+        change = max(change, abs(force[i] - mean[i]))
+    if change < p["still_force"]:
+        for i in range(3):
+            mean[i] += 0.3 * (force[i] - mean[i])
+    s["rest_t"], s["impulse"] = t, 0.0
+
+
+@njit(cache=True, nogil=True)
+def stand(p, s, r, v, dx):
+    """A fix of a standing vehicle: its velocity is zero, and the gyroscope reads its bias."""
+    w, h, d = s["w_v"], np.empty(STATES), np.zeros(3)
+    turning = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    if not (s["fix_speed"] < p["still_speed"] and turning < p["still_rate"]):
+        return
+    for i in range(3):
+        d[:] = 0.0
+        d[i] = 1.0
+        velocity_row(r, v, w, d, h)
+        update(s["covariance"], dx, h, -v[i], p["still_velocity"] ** 2)
+        h[:] = 0.0
+        h[GYRO_BIAS + i] = 1.0
+        update(s["covariance"], dx, h, w[i], p["still_rate"] ** 2)
 
 
 @njit(cache=True, nogil=True)
@@ -528,7 +556,7 @@ def start(p, c, s):
     if s["fix_t"] - s["rest_t"] < STALE * 5:
         roll = math.atan2(rest[1], rest[2])
         pitch = -math.atan2(rest[0], math.hypot(rest[1], rest[2]))
-        if s["impulse"] < -0.4 * fix[3]:
+        if s["impulse"] < -0.25 * fix[3]:
             heading += math.pi  # the forward force since then has been against the motion: it reverses
     q[0], q[1], q[2], q[3] = math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading)
     turn_right(q, 0.0, pitch, 0.0, q)
@@ -536,7 +564,7 @@ def start(p, c, s):
     v = s["v_n"]
     v[0], v[1], v[2] = fix[3] * math.sin(fix[4]), fix[3] * math.cos(fix[4]), 0.0
     first = math.isnan(s["arm"][0])
-    start_covariance(p, s["covariance"], first, not math.isnan(c["device"][0]))
+    start_covariance(p, s["covariance"], fix[3], first, not math.isnan(c["device"][0]))
     if first:
         for i in range(3):
             s["arm"][i] = 0.0 if math.isnan(c["device"][i]) else c["device"][i]
@@ -550,13 +578,14 @@ def start(p, c, s):
 
 
 @njit(cache=True, nogil=True)
-def start_covariance(p, cov, first, measured):
+def start_covariance(p, cov, speed, first, measured):
     """Covariance at a start; what is known of biases and arm is kept unless it is the first."""
     cov[: ATTITUDE + 3, :] = 0.0
     cov[:, : ATTITUDE + 3] = 0.0
     for i in range(3):
         cov[VELOCITY + i, VELOCITY + i] = 1.0
-        cov[ATTITUDE + i, ATTITUDE + i] = (p["start_tilt"] if i < 2 else p["start_heading"]) ** 2
+        cov[ATTITUDE + i, ATTITUDE + i] = p["start_tilt"] ** 2
+    cov[ATTITUDE + 2, ATTITUDE + 2] = p["start_heading"] ** 2 + (2 * p["velocity"] / speed) ** 2
     if first:
         cov[GYRO_BIAS:, GYRO_BIAS:] = 0.0
         for i in range(3):
@@ -649,7 +678,7 @@ def spread_bicycle(p, cov, k, dt):
 
 @njit(cache=True, nogil=True)
 def constrain(p, c, s, r, gyro):
-    """Measurements nobody makes: lateral velocity as tyres allow it, none off the road, nothing at standstill."""
+    """Measurements nobody makes: lateral velocity as the tyres allow it, and none off the road."""
     cov, v, w, h, dx = s["covariance"], s["v_n"], s["w_v"], np.empty(STATES), np.zeros(STATES)
     interval = p["constraint_interval"]
     correlation = p["constraint_correlation"] + min(s["t"] - s["last_fix_t"], p["outage_correlation"])
@@ -664,10 +693,6 @@ def constrain(p, c, s, r, gyro):
     update(cov, dx, h, -upward, correlated(sigma**2, correlation, interval))
     if not gyro:
         level(p, r, cov, dx, h)
-    recent = s["t"] - s["last_fix_t"] < 1.5 * s["fix_interval"] + 0.1
-    slow = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) < p["still_rate"]
-    if recent and slow and s["fix_speed"] < p["still_speed"]:
-        stand(p, s, gyro, dx, h)
     fold(p, s, dx)
 
 
@@ -679,19 +704,6 @@ def level(p, r, cov, dx, h):
         h[:] = 0.0
         h[ATTITUDE + 1 - axis] = 1.0 - 2.0 * axis
         update(cov, dx, h, -r[axis, 2], variance)
-
-
-@njit(cache=True, nogil=True)
-def stand(p, s, gyro, dx, h):
-    """Standing still: no velocity, and the gyroscope reads its bias."""
-    for i in range(3):
-        h[:] = 0.0
-        h[VELOCITY + i] = 1.0
-        update(s["covariance"], dx, h, -s["v_n"][i], 0.05**2)
-        if gyro:
-            h[:] = 0.0
-            h[GYRO_BIAS + i] = 1.0
-            update(s["covariance"], dx, h, s["w_v"][i], 0.01**2)
 
 
 # ----------------------------------------------------------------------------------------------------------- rows

@@ -17,7 +17,7 @@ class Parameters:
     """s from the moment a fix tells of to its arrival; at most 1"""
     max_gap: float = 1.0
     """s; after a longer gap between samples the filter starts anew, biases kept"""
-    start_speed: float = 3.0
+    start_speed: float = 2.0
     """m/s; the first fix this fast shows where the vehicle points"""
     start_tilt: float = radians(3.0)
     """rad, of roll and pitch at the start"""
@@ -81,7 +81,11 @@ class Parameters:
     still_speed: float = 0.3
     """m/s; a fix below says that the vehicle stands"""
     still_rate: float = 0.03
-    """rad/s; and so must the gyroscope"""
+    """rad/s; and the gyroscope must read less; at the same time the error of a still gyroscope's reading"""
+    still_force: float = 0.25
+    """m/s2; and the accelerometer must have changed less to be at rest"""
+    still_velocity: float = 0.1
+    """m/s, of a vehicle that stands"""
 
     rate_smoothing: float = 0.05
     """s, time constant of the filtered rate whose derivative is the angular acceleration"""

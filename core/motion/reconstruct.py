@@ -68,7 +68,7 @@ def reconstruct(vehicle: Vehicle, q_vs: ArrayLike, samples: Samples, params: Par
 def _row_limit(params: Parameters, samples: Samples) -> int:
     if not len(samples):
         return 0
-    return min(len(samples), math.floor((samples.t[-1] - samples.t[0]) * params.rate) + 2)
+    return min(len(samples), math.floor(float(samples.t[-1] - samples.t[0]) * params.rate) + 2)
 
 
 def _motion(state: State, rows: Floats) -> Motion:

@@ -78,9 +78,8 @@ def vehicle_from(description: str | Mapping[str, Any]) -> Vehicle:
     unknown = [key for key in given if key not in known]
     if unknown:
         raise VehicleError(f"{unknown[0]!r} is not known; there are class, {', '.join(sorted(known))}.")
-    place = {"device": _place(given.pop("device"))} if given.get("device") is not None else {}
-    given.pop("device", None)
-    return replace(VEHICLES[name], **{key: _positive(key, value) for key, value in given.items()}, **place)
+    values: dict[str, Any] = {key: (_place if key == "device" else _positive)(key, x) for key, x in given.items()}
+    return replace(VEHICLES[name], **values)
 
 
 def _positive(name: str, value: Any) -> float:
@@ -89,10 +88,10 @@ def _positive(name: str, value: Any) -> float:
     return float(value)
 
 
-def _place(value: Any) -> tuple[float, float, float]:
+def _place(name: str, value: Any) -> tuple[float, float, float]:
     numbers = value if isinstance(value, list | tuple) else ()
     if len(numbers) != 3 or not all(_is_number(x) for x in numbers):
-        raise VehicleError(f"device must be three numbers, m ahead, left and above, not {value!r}.")
+        raise VehicleError(f"{name} must be three numbers, m ahead, left and above, not {value!r}.")
     return float(numbers[0]), float(numbers[1]), float(numbers[2])
 
 
