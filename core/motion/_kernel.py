@@ -28,6 +28,8 @@ MOST_LATENCY = 1.0
 """s"""
 STALE = 3.0
 """s; two fixes further apart say nothing about a rate"""
+HOLD = 0.25
+"""s for which a missing angular rate is taken to be the last one"""
 FULL_FORCE = 0.98
 """share of the friction limit beyond which a slip angle is not told from the force"""
 STEP_LIMIT = 0.4
@@ -198,6 +200,7 @@ def fold(p, s, dx):
     """Take the error state into the state, the past included as far as late fixes may ask for it."""
     place, v, bias, gyro_bias, q = s["place"], s["v_n"], s["bias"], s["gyro_bias"], s["q_nv"]
     north, east = radii(place[0])
+    correct_past(p, s, dx, north, east)
     place[0] += dx[POSITION + 1] / north
     place[1] += dx[POSITION] / east
     place[2] += dx[POSITION + 2]
@@ -208,23 +211,20 @@ def fold(p, s, dx):
     s["arm"][0] += dx[ARM]
     s["arm"][1] += dx[ARM + 1]
     turn_left(q, dx[ATTITUDE], dx[ATTITUDE + 1], dx[ATTITUDE + 2])
-    correct_past(p, s, dx, north, east)
 
 
 @njit(cache=True, nogil=True)
 def correct_past(p, s, dx, north, east):
     """Correct what was predicted of the past as the present was: an error of velocity or attitude is an old one."""
-    t, past_v, past_p = s["ring_t"], s["ring_v"], s["ring_p"]
+    t, past_v, past_p, v = s["ring_t"], s["ring_v"], s["ring_p"], s["v_n"]
     newest = s["ring_head"]
-    v0, v1, v2 = past_v[newest, 0], past_v[newest, 1], past_v[newest, 2]
     a0, a1, a2 = dx[ATTITUDE], dx[ATTITUDE + 1], dx[ATTITUDE + 2]
     for k in range(s["ring_count"]):
         i = (newest - k) % RING
         age = t[newest] - t[i]
         if age > p["latency"] + 0.5:
             break
-        d0, d1, d2 = past_v[i, 0], past_v[i, 1], past_v[i, 2]
-        d0, d1, d2 = d0 - v0, d1 - v1, d2 - v2
+        d0, d1, d2 = past_v[i, 0] - v[0], past_v[i, 1] - v[1], past_v[i, 2] - v[2] - GRAVITY * age
         past_v[i, 0] += dx[VELOCITY] + a1 * d2 - a2 * d1
         past_v[i, 1] += dx[VELOCITY + 1] + a2 * d0 - a0 * d2
         past_v[i, 2] += dx[VELOCITY + 2] + a0 * d1 - a1 * d0
@@ -383,7 +383,11 @@ def note_fix(p, s):
 
 @njit(cache=True, nogil=True)
 def velocity_row(r, v, w, d, h):
-    """Row of H for the device's velocity along the unit vector `d`: d, v x d, and d R [w]x for the arm."""
+    """Row of H for the device's velocity along the unit vector `d`: d, v x d, and d R [w]x for the arm.
+
+    `v` is what an error of the attitude turns: that velocity less the velocity of the centre of gravity now, and for a
+    time of the past the gravity since then, which the specific force has had to carry.
+    """
     h[:] = 0.0
     for i in range(3):
         h[VELOCITY + i] = d[i]
@@ -415,8 +419,8 @@ def correlated(variance, correlation, interval):
 
 
 @njit(cache=True, nogil=True)
-def take_velocity(p, s, r, v, dx):
-    """Velocity of the fix, along its direction and across. False when it is not believed."""
+def take_velocity(p, s, r, v, age, dx):
+    """Velocity of the fix of `age` s, along its direction and across. False when it is not believed."""
     fix, cov = s["fix"], s["covariance"]
     speed, course = fix[3], fix[4]
     if math.isnan(speed):
@@ -429,13 +433,16 @@ def take_velocity(p, s, r, v, dx):
     if math.isnan(course):  # the speed alone, along the motion as it is seen
         course = math.atan2(v[0], v[1])
         across = np.inf if speed > p["walking_pace"] else across
-    d, h1, h2 = np.zeros(3), np.empty(STATES), np.empty(STATES)
+    d, h1, h2, turned = np.zeros(3), np.empty(STATES), np.empty(STATES), np.empty(3)
+    for i in range(3):
+        turned[i] = v[i] - s["v_n"][i]
+    turned[2] -= GRAVITY * age
     d[0], d[1] = math.sin(course), math.cos(course)
     e1 = speed - d[0] * v[0] - d[1] * v[1]
-    velocity_row(r, v, s["w_v"], d, h1)
+    velocity_row(r, turned, s["w_v"], d, h1)
     d[0], d[1] = d[1], -d[0]
     e2 = -d[0] * v[0] - d[1] * v[1]
-    velocity_row(r, v, s["w_v"], d, h2)
+    velocity_row(r, turned, s["w_v"], d, h2)
     if e1 * e1 / (spread(cov, h1) + along) + e2 * e2 / (spread(cov, h2) + across) > p["gate"]:
         return False
     update(cov, dx, h1, e1, along)
@@ -444,7 +451,7 @@ def take_velocity(p, s, r, v, dx):
     if not math.isnan(fix[5]):
         d[:] = 0.0
         d[2] = 1.0
-        velocity_row(r, v, s["w_v"], d, h1)
+        velocity_row(r, turned, s["w_v"], d, h1)
         variance = correlated(p["vertical_velocity"] ** 2, p["velocity_correlation"], s["fix_interval"])
         update(cov, dx, h1, fix[5] - v[2], variance)
     return True
@@ -500,13 +507,14 @@ def take_fix(p, c, s, r):
         start(p, c, s)
         return
     v, place, dx = np.empty(3), np.empty(3), np.zeros(STATES)
-    look_back(s, t - p["latency"], v, place)
-    take_position(p, s, place, s["t"] - t + p["latency"], dx)
+    age = s["t"] - t + p["latency"]
+    look_back(s, s["t"] - age, v, place)
+    take_position(p, s, place, age, dx)
     if s["ring_count"] == 0:
         keep_past(s, r)
-    look_back(s, t - p["latency"] - delay, v, place)
-    if take_velocity(p, s, r, v, dx):
-        stand(p, s, r, v, dx)
+    look_back(s, s["t"] - age - delay, v, place)
+    if take_velocity(p, s, r, v, age + delay, dx):
+        stand(p, s, v, dx)
         s["doubted_since"] = np.nan
         fold(p, s, dx)
     elif math.isnan(s["doubted_since"]):
@@ -530,16 +538,15 @@ def rest(p, s, t):
 
 
 @njit(cache=True, nogil=True)
-def stand(p, s, r, v, dx):
+def stand(p, s, v, dx):
     """A fix of a standing vehicle: its velocity is zero, and the gyroscope reads its bias."""
-    w, h, d = s["w_v"], np.empty(STATES), np.zeros(3)
+    w, h = s["w_v"], np.empty(STATES)
     turning = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
     if not (s["fix_speed"] < p["still_speed"] and turning < p["still_rate"]):
         return
     for i in range(3):
-        d[:] = 0.0
-        d[i] = 1.0
-        velocity_row(r, v, w, d, h)
+        h[:] = 0.0
+        h[VELOCITY + i] = 1.0
         update(s["covariance"], dx, h, -v[i], p["still_velocity"] ** 2)
         h[:] = 0.0
         h[GYRO_BIAS + i] = 1.0
@@ -724,7 +731,12 @@ def take_interval(p, c, s, r_vs, row):
             w[i] = (r_vs[i, 0] * s["sum_w"][0] + r_vs[i, 1] * s["sum_w"][1] + r_vs[i, 2] * s["sum_w"][2]) / s[
                 "gyro_count"
             ] - s["gyro_bias"][i]
-    if not gyro:
+    if gyro:
+        s["gyro_t"] = t
+    elif t - s["gyro_t"] < HOLD:
+        gyro = True
+        w[:] = s["w_v"]
+    else:
         w[2] = s["course_rate"]
     if not dt <= p["max_gap"]:
         s["running"], dt = False, 0.0

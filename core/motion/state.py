@@ -28,6 +28,7 @@ MOTION = np.dtype(
         ("f_v", "f8", (3,)),  # m/s2, at the device
         ("w_v", "f8", (3,)),  # rad/s, bias taken out
         ("dw_v", "f8", (3,)),  # rad/s2
+        ("gyro_t", "f8"),  # s, last interval with an angular rate
         ("smooth_w", "f8", (3,)),
         ("force", "f8", (3,)),  # m/s2, at the centre of gravity, bias taken out
         # the kinematic filter
@@ -74,8 +75,8 @@ def initial_state() -> State:
     """Give the state at the beginning of a session: nothing is known."""
     state = np.zeros(1, MOTION)
     for name in (
-        "sample_t", "t", "last_fix_t", "fix_speed", "fix_course", "fix_course_t", "fix_place_t", "doubted_since",
-        "rest_t", "origin", "fix_place", "place", "constraint_t", "arm",
+        "sample_t", "t", "gyro_t", "last_fix_t", "fix_speed", "fix_course", "fix_course_t", "fix_place_t",
+        "doubted_since", "rest_t", "origin", "fix_place", "place", "constraint_t", "arm",
     ):  # fmt: skip
         state[name] = np.nan
     state["fix_interval"] = 1.0

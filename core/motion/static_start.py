@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 LEVEL = np.array([0.0, 0.0, STANDARD_GRAVITY])
 STARTS = ((0.0, 0.0), (2.5, 0.3), (-1.5, -0.3), (1.5, 0.3))
 """rad, roll and pitch from which the optimisation begins, none of them opposite to all minima"""
+EQUAL = 1e-12
+"""(m/s2)2, difference of objectives that is none"""
 
 
 class StaticStart(NamedTuple):
@@ -48,8 +50,9 @@ def static_start(f_s: ArrayLike, mounting: ArrayLike | None = None) -> StaticSta
     mean = np.mean(np.reshape(np.asarray(f_s, np.float64), (-1, 3)), axis=0)
     roll, pitch, yaw = (0.0, 0.0, 0.0) if mounting is None else quaternion.angles(np.asarray(mounting))
     found = [_optimise(mean, np.array([*start, yaw])) for start in ((roll, pitch), *STARTS)]
-    best = min(found, key=lambda result: round(float(result.cost), 9))  # of equal ones the first: near the mounting
-    q_vs = quaternion.from_angles(*best.x)
+    least = min(float(result.cost) for result in found)
+    best = next(result for result in found if result.cost < least + EQUAL)  # the first: near the mounting
+    q_vs = quaternion.from_angles(float(best.x[0]), float(best.x[1]), yaw)  # where the optimum leaves yaw means nothing
     return StaticStart(
         q_vs, quaternion.angles(q_vs), mounting is not None, float(np.sqrt(2 * best.cost)), str(best.message)
     )
@@ -60,4 +63,4 @@ def _optimise(mean: Floats, angles: Floats) -> OptimizeResult:
         difference: Floats = quaternion.rotate(quaternion.from_angles(*x), mean) - LEVEL
         return difference
 
-    return least_squares(error, angles, xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    return least_squares(error, angles, xtol=1e-14, ftol=1e-14, gtol=1e-14)
