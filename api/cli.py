@@ -66,6 +66,47 @@ def replay(
 
 
 @app.command()
+def motion(
+    log: Annotated[Path, typer.Argument(help="Log file.", show_default=False)],
+    vehicle: Annotated[
+        str,
+        typer.Option(
+            metavar="FILE|CLASS",
+            help="Vehicle: a file in TOML, or city_car, sedan, suv, van, truck, bus.",
+            show_default=False,
+        ),
+    ],
+    mount: Annotated[
+        str | None,
+        typer.Option(metavar="YAW,PITCH,ROLL", help="Mounting, degrees; if not given, the estimator finds it first."),
+    ] = None,
+    latency: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=1.0,
+            help="Seconds by which fixes come late; if not given, as the estimator finds them, 0 with --mount.",
+        ),
+    ] = None,
+    every: Annotated[float, typer.Option(min=0.01, help="Seconds of log time between rows with --json.")] = 1.0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object on each line.")] = False,
+    plot: Annotated[Path | None, typer.Option(help="Picture to write, .png, .svg or .pdf.", show_default=False)] = None,
+    log_format: LogFormat = None,
+    course: Course = "auto",
+) -> None:
+    """Reconstruct the motion of a vehicle: trajectory, velocity, acceleration, attitude, sideslip.
+
+    Exit status 2 when the log cannot be read, or does not show how the device is mounted.
+    """
+    from api.commands import motion as command
+    from api.formats import Sense
+    from api.formats.files import Format
+
+    chosen = log_format and Format(log_format)
+    command.run(log, chosen, Sense(course), vehicle, mount, latency, every, as_json, plot)
+
+
+@app.command()
 def calibrate(
     logs: Annotated[
         list[Path], typer.Argument(help="Logs of one device that lay still in nine poses.", show_default=False)

@@ -24,6 +24,8 @@ COMMANDS = [
     "openapi",
 ]
 
+COMMANDS = ["serve", "replay", "motion", "calibrate", "simulate", "upload", "demo", "keys", "db", "openapi"]
+
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_explains_itself(command: str) -> None:
