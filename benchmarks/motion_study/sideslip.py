@@ -8,6 +8,7 @@ from typing import NamedTuple
 import matplotlib as mpl
 import numpy as np
 from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from benchmarks.accuracy_study import parallel
@@ -169,7 +170,7 @@ def outages_table() -> str:
     ]
     found = parallel.run("outages", bridge, scenarios)
     lines = [
-        "| outage | position error after it, m: median, worst | sigma told, per axis, m: median | worst error / sigma |",
+        "| outage | error of the position after it, m: median, worst | sigma per axis, m | worst error / sigma |",
         "|---|---|---|---|",
     ]
     size = len(found) // len(OUTAGES)
@@ -203,7 +204,7 @@ def draw(path: Path) -> None:
     plt.close(figure)
 
 
-def _curves(axis: plt.Axes, motion: Motion, without: Motion, truth: Floats, at: NDArray[np.bool_]) -> None:
+def _curves(axis: Axes, motion: Motion, without: Motion, truth: Floats, at: NDArray[np.bool_]) -> None:
     t, slip, sigma = motion.t[at], np.degrees(motion.sideslip[at]), np.degrees(motion.sideslip_sigma[at])
     axis.fill_between(t, slip - 2 * sigma, slip + 2 * sigma, color="tab:orange", alpha=0.2, lw=0)
     axis.plot(t, truth, "k", lw=1.4, label="truth")
@@ -225,17 +226,18 @@ def section() -> str:
     ]
     return f"""## How well it does
 
-Simulated manoeuvres (`core/simulation_handling.py`): {len(found)} drives, seeds nothing was tuned on, sensors of the class
-`mems`, GPS at 5 or 10 Hz, device anywhere in the cabin, banks and grades of about a degree. RMS of the sideslip angle
-over the manoeuvres. Wanted: {TARGETS[0]} degrees with a steering angle: {rms[0]:.2f}, {met[0]}; {TARGETS[1]} degrees without:
-{rms[1]:.2f}, {met[1]}. The vehicle's parameters are known here; below they are not.
+Simulated manoeuvres (`core/simulation_handling.py`): {len(found)} drives, seeds nothing was tuned on, sensors of
+the class `mems`, GPS at 5 or 10 Hz, device anywhere in the cabin, banks and grades of about a degree. RMS of the
+sideslip angle over the manoeuvres. Wanted with a steering angle: {TARGETS[0]} degrees, reached: {rms[0]:.2f},
+{met[0]}. Wanted without: {TARGETS[1]} degrees, reached: {rms[1]:.2f}, {met[1]}. The parameters of the vehicle are
+known here; below they are not.
 
 {table}
 
 ![Sideslip of a slalom and of a double lane change](pictures/motion/{PICTURE.name})
 
-The steering angle (offset 1.5 degrees, noise 0.5 degrees) adds little on these drives: yaw rate and lateral force already tell the
-rear axle's slip, from which the other estimate is made.
+The steering angle (offset 1.5 degrees, noise 0.5 degrees) adds little on these drives: yaw rate and lateral force
+already tell the slip of the rear axle, from which the other estimate is made.
 
 The reconstruction assumes a sedan of the default values, two-track model, the same three manoeuvres at 0.5 to 0.6 g:
 

@@ -1,4 +1,6 @@
+import re
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,7 @@ from core.motion.vehicle import as_record
 @pytest.mark.parametrize("name", VEHICLES)
 def test_every_class_is_a_vehicle_that_understeers(name: str) -> None:
     c = vehicle_from(name)
-    assert c is not None
+
     assert c.a2 / c.cornering_stiffness_1 > c.a1 / c.cornering_stiffness_2, "ordinary vehicles are stable at any speed"
     assert 0.2 < c.yaw_inertia / (c.mass * c.a1 * c.a2) < 2.0
 
@@ -50,3 +52,12 @@ def test_the_record_holds_every_value() -> None:
         if item.name != "device":
             assert record[item.name] == getattr(VEHICLES["bus"], item.name)
     assert np.isnan(record["device"]).all()
+
+
+def test_the_table_of_classes_in_the_manual_is_true() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "motion.md").read_text(encoding="utf-8")
+    names = [item.name for item in fields(Vehicle) if item.name != "device"]
+    for name, c in VEHICLES.items():
+        (row,) = re.findall(rf"^\| `{name}` \| (.*) \|$", page, re.MULTILINE)
+        told = [float(cell) for cell in row.split(" | ")]
+        np.testing.assert_allclose(told, [getattr(c, key) for key in names], rtol=6e-3)
