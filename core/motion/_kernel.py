@@ -28,6 +28,8 @@ MOST_LATENCY = 1.0
 """s"""
 STALE = 3.0
 """s; two fixes further apart say nothing about a rate"""
+MOST_SURPRISE = 10.0
+"""squared Mahalanobis distance as which larger ones are learnt from"""
 HOLD = 0.25
 """s for which a missing angular rate is taken to be the last one"""
 FULL_FORCE = 0.98
@@ -419,6 +421,14 @@ def correlated(variance, correlation, interval):
 
 
 @njit(cache=True, nogil=True)
+def learn_noise(p, s, distance):
+    """Believe a receiver less whose velocities keep missing the prediction; `distance` is 2 on average."""
+    gain = min(s["fix_interval"] / p["velocity_learning"], 0.3)
+    factor = s["velocity_factor"] * math.exp(gain * (0.5 * min(distance, MOST_SURPRISE) - 1.0))
+    s["velocity_factor"] = min(max(factor, 1.0), p["velocity_distrust"])
+
+
+@njit(cache=True, nogil=True)
 def take_velocity(p, s, r, v, age, dx):
     """Velocity of the fix of `age` s, along its direction and across. False when it is not believed."""
     fix, cov = s["fix"], s["covariance"]
@@ -426,10 +436,11 @@ def take_velocity(p, s, r, v, age, dx):
     if math.isnan(speed):
         return True
     sigma = p["velocity"] if math.isnan(fix[6]) else max(fix[6], 0.03)
-    along = correlated(sigma**2, p["velocity_correlation"], s["fix_interval"])
+    along = s["velocity_factor"] * correlated(sigma**2, p["velocity_correlation"], s["fix_interval"])
     across = along
     if not math.isnan(fix[7]):
-        across = correlated((max(speed, 0.5) * fix[7]) ** 2, p["velocity_correlation"], s["fix_interval"])
+        sigma = max(speed, 0.5) * fix[7]
+        across = s["velocity_factor"] * correlated(sigma**2, p["velocity_correlation"], s["fix_interval"])
     if math.isnan(course):  # the speed alone, along the motion as it is seen
         course = math.atan2(v[0], v[1])
         across = np.inf if speed > p["walking_pace"] else across
@@ -443,7 +454,9 @@ def take_velocity(p, s, r, v, age, dx):
     d[0], d[1] = d[1], -d[0]
     e2 = -d[0] * v[0] - d[1] * v[1]
     velocity_row(r, turned, s["w_v"], d, h2)
-    if e1 * e1 / (spread(cov, h1) + along) + e2 * e2 / (spread(cov, h2) + across) > p["gate"]:
+    distance = e1 * e1 / (spread(cov, h1) + along) + e2 * e2 / (spread(cov, h2) + across)
+    learn_noise(p, s, distance if across < np.inf else 2 * distance)
+    if distance > p["gate"]:
         return False
     update(cov, dx, h1, e1, along)
     if across < np.inf:

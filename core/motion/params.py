@@ -49,6 +49,10 @@ class Parameters:
     """m/s per axis, of a fix's velocity where the receiver states no accuracy"""
     velocity_correlation: float = 1.0
     """s for which the error of the velocity stays the same"""
+    velocity_learning: float = 5.0
+    """s in which it shows that a receiver is worse than it states"""
+    velocity_distrust: float = 100.0
+    """variance at most learnt, relative to what is stated"""
     vertical_velocity: float = 0.3
     """m/s"""
     position: float = 2.0

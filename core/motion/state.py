@@ -58,6 +58,7 @@ MOTION = np.dtype(
         ("course_rate", "f8"),  # rad/s, anti-clockwise
         ("fix_place", "f8", (3,)),
         ("fix_place_t", "f8"),
+        ("velocity_factor", "f8"),  # variance of the velocities relative to what is stated, learnt
         ("doubted_since", "f8"),  # s, the first of the fixes not believed
         # standing, before the start
         ("rest_f", "f8", (3,)),  # m/s2, while the vehicle stood
@@ -79,6 +80,6 @@ def initial_state() -> State:
         "doubted_since", "rest_t", "origin", "fix_place", "place", "constraint_t", "arm",
     ):  # fmt: skip
         state[name] = np.nan
-    state["fix_interval"] = 1.0
+    state["fix_interval"] = state["velocity_factor"] = 1.0
     state["q_nv"][0, 0] = 1.0
     return state
