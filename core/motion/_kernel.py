@@ -31,7 +31,7 @@ STALE = 3.0
 MOST_SURPRISE = 10.0
 """squared Mahalanobis distance as which larger ones are learnt from"""
 HOLD = 0.25
-"""s for which a missing angular rate is taken to be the last one"""
+"""s for which a missing angular rate or steering angle is taken to be the last one"""
 FULL_FORCE = 0.98
 """share of the friction limit beyond which a slip angle is not told from the force"""
 STEP_LIMIT = 0.4
@@ -735,7 +735,9 @@ def take_interval(p, c, s, r_vs, row):
     n, r = s["count"], np.empty((3, 3))
     t = s["sum_t"] / n
     gyro = s["gyro_count"] > 0
-    steer = s["sum_steer"] / s["steer_count"] if s["steer_count"] > 0 else np.nan
+    if s["steer_count"] > 0:
+        s["steer"], s["steer_t"] = s["sum_steer"] / s["steer_count"], t
+    steer = s["steer"] if t - s["steer_t"] < HOLD else np.nan
     dt = t - s["t"]
     f, w = np.empty(3), np.zeros(3)
     for i in range(3):

@@ -29,6 +29,8 @@ MOTION = np.dtype(
         ("w_v", "f8", (3,)),  # rad/s, bias taken out
         ("dw_v", "f8", (3,)),  # rad/s2
         ("gyro_t", "f8"),  # s, last interval with an angular rate
+        ("steer", "f8"),  # rad, last steering angle
+        ("steer_t", "f8"),
         ("smooth_w", "f8", (3,)),
         ("force", "f8", (3,)),  # m/s2, at the centre of gravity, bias taken out
         # the kinematic filter
@@ -76,8 +78,8 @@ def initial_state() -> State:
     """Give the state at the beginning of a session: nothing is known."""
     state = np.zeros(1, MOTION)
     for name in (
-        "sample_t", "t", "gyro_t", "last_fix_t", "fix_speed", "fix_course", "fix_course_t", "fix_place_t",
-        "doubted_since", "rest_t", "origin", "fix_place", "place", "constraint_t", "arm",
+        "sample_t", "t", "gyro_t", "steer", "steer_t", "last_fix_t", "fix_speed", "fix_course", "fix_course_t",
+        "fix_place_t", "doubted_since", "rest_t", "origin", "fix_place", "place", "constraint_t", "arm",
     ):  # fmt: skip
         state[name] = np.nan
     state["fix_interval"] = state["velocity_factor"] = 1.0

@@ -9,6 +9,8 @@ import pytest
 from core.motion import VEHICLES, Motion, reconstruct
 from core.simulation_handling import HandlingDrive, HandlingScenario, simulate_handling
 
+pytestmark = pytest.mark.compiled
+
 OUTAGE = (45.0, 75.0)
 
 

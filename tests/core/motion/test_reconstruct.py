@@ -13,6 +13,8 @@ from core.samples import Samples
 from core.simulation import Scenario, simulate
 from core.simulation_handling import MANOEUVRES_BEGIN, HandlingDrive, HandlingScenario, TrueMotion, simulate_handling
 
+pytestmark = pytest.mark.compiled
+
 SEDAN = VEHICLES["sedan"]
 
 
@@ -93,6 +95,20 @@ def test_the_other_sign_of_the_quaternion_is_the_same_mounting() -> None:
     samples = drive.samples.slice(0, 3000)
     one, other = (reconstruct(SEDAN, sign * drive.truth.q_vs, samples) for sign in (1.0, -1.0))
     np.testing.assert_array_equal(one.sideslip, other.sideslip)
+
+
+def test_a_steering_angle_that_comes_less_often_serves_as_well() -> None:
+    drive = handled("constant_radius", "nonlinear")
+    steer = drive.samples.steer
+    assert steer is not None
+    rare = np.where(np.arange(steer.size) % 7 == 0, steer, np.nan)
+    one, other = (
+        reconstruct(known_place(drive), drive.truth.q_vs, replace(drive.samples, steer=values))
+        for values in (steer, rare)
+    )
+    none = reconstruct(known_place(drive), drive.truth.q_vs, without_steer(drive.samples))
+    at = one.t > MANOEUVRES_BEGIN
+    assert np.std((one.sideslip - other.sideslip)[at]) < 0.3 * np.std((one.sideslip - none.sideslip)[at])
 
 
 @pytest.mark.parametrize("seed", range(3))
