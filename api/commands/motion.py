@@ -188,17 +188,15 @@ def _duration(samples: Samples) -> float:
 
 def _print_rows(motion: Motion, next_row: float, every: float) -> float:
     """Print the first row of each `every` seconds; gives the time of the next one."""
-    angles = quaternion.all_angles(motion.q_nv)
-    for k in range(motion.t.size):
-        if motion.t[k] >= next_row:
-            next_row += every * (1 + math.floor((motion.t[k] - next_row) / every))
-            typer.echo(json.dumps(_row(motion, angles[k], k), allow_nan=False))
+    while (k := int(np.searchsorted(motion.t, next_row))) < motion.t.size:
+        next_row += every * (1 + math.floor((motion.t[k] - next_row) / every))
+        typer.echo(json.dumps(_row(motion, k), allow_nan=False))
     return next_row
 
 
-def _row(motion: Motion, angles: Floats, k: int) -> dict[str, Any]:
+def _row(motion: Motion, k: int) -> dict[str, Any]:
     """Give one moment; null where nothing is known."""
-    roll, pitch, yaw = np.degrees(angles)
+    roll, pitch, yaw = np.degrees(quaternion.angles(motion.q_nv[k]))
     numbers = {
         "speed": np.hypot(*motion.velocity_v[k]),
         "velocity": motion.velocity_v[k],

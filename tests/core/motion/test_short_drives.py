@@ -34,7 +34,8 @@ def assert_right(it: HandlingDrive, motion: Motion, limit: float = 0.6) -> None:
 
 def with_fix(samples: Samples, **columns: float) -> Samples:
     """The same samples with some columns of the fixes replaced."""
-    names: dict[str, slice | int] = {"position": slice(0, 3), "speed": 3, "course": 4, "vertical": 5, "accuracy": slice(6, 8)}
+    place, accuracy = slice(0, 3), slice(6, 8)
+    names: dict[str, slice | int] = {"position": place, "speed": 3, "course": 4, "vertical": 5, "accuracy": accuracy}
     fix = samples.fix.copy()
     for name, value in columns.items():
         fix[:, names[name]] = value
