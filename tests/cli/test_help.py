@@ -15,6 +15,7 @@ COMMANDS = [
         "attitude",
         "characterise",
         "steering",
+        "motion",
         "simulate",
         "upload",
         "demo",
@@ -23,8 +24,6 @@ COMMANDS = [
     ),
     "openapi",
 ]
-
-COMMANDS = ["serve", "replay", "motion", "calibrate", "simulate", "upload", "demo", "keys", "db", "openapi"]
 
 
 @pytest.mark.parametrize("command", COMMANDS)
