@@ -30,6 +30,7 @@ STATUS: dict[type[errors.ServiceError], HTTPStatus] = {
     errors.NotFoundError: HTTPStatus.NOT_FOUND,
     errors.ConflictError: HTTPStatus.CONFLICT,
     errors.UnusableError: HTTPStatus.UNPROCESSABLE_ENTITY,
+    errors.LongSpanError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.WebhookUrlError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.CursorError: HTTPStatus.UNPROCESSABLE_ENTITY,
     errors.ExpiryError: HTTPStatus.UNPROCESSABLE_ENTITY,

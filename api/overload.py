@@ -4,6 +4,7 @@ import asyncio
 import re
 import secrets
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NoReturn
@@ -18,6 +19,8 @@ UPLOAD = re.compile(r"/api/v1/devices/[^/]+/chunks")
 MAX_OTHER_BYTES = 1024 * 1024
 """of a body that is no chunk"""
 MAX_HEADER_BYTES = 32 * 1024
+MOST_COMPUTATIONS = 2
+"""at once, of motion: uploads need the processor too"""
 LONGEST_RETRY = 5
 """s at most until a refused upload is worth another try; at random, so that not all come back at once"""
 WORDS = "The service has more work than it can take on; try again after the time in Retry-After."
@@ -30,6 +33,7 @@ class Gate:
         self.settings = settings
         self.uploads = 0
         self.held = 0
+        self._computations = threading.BoundedSemaphore(MOST_COMPUTATIONS)
 
     @property
     def is_full(self) -> bool:
@@ -48,6 +52,16 @@ class Gate:
         finally:
             self.uploads -= 1
             metrics.QUEUE.dec()
+
+    @contextmanager
+    def computation(self) -> Iterator[None]:
+        """Count an answer that takes much to compute, in a thread of its own; refuse one that is too many."""
+        if not self._computations.acquire(blocking=False):
+            refuse("computations")
+        try:
+            yield
+        finally:
+            self._computations.release()
 
     def has_room(self, size: int, own: int = 0) -> bool:
         """Tell whether so many bytes more may be held by a body that has `own`; a body alone always may."""

@@ -24,11 +24,16 @@ AlertKind = Literal[
     "sensor_fault",
     "device_silent",
     "clock_fault",
+    "impact",
+    "harsh_driving",
 ]
+MotionEventKind = Literal["impact", "harsh_braking", "harsh_acceleration", "harsh_cornering", "pothole"]
+VehicleClass = Literal["city_car", "sedan", "suv", "van", "truck", "bus"]
+RawFormat = Literal["arrow", "csv"]
 Severity = Literal["info", "warning", "critical"]
 AlertState = Literal["open", "acknowledged", "resolved"]
 DeviceOrder = Literal["id", "-id", "name", "-name", "last_data_at", "-last_data_at"]
-ThresholdGroup = Literal["settling", "verification", "change", "alerts", "upload", "retention"]
+ThresholdGroup = Literal["settling", "verification", "change", "events", "alerts", "upload", "retention"]
 
 Vector3 = tuple[float, float, float]
 Vector4 = tuple[float, float, float, float]
@@ -213,6 +218,78 @@ class Estimates(Document):
     progress: list[float]
 
 
+# ---------------------------------------------------------------- motion
+
+
+class MotionEvent(Document):
+    """Something that happened to the vehicle, seen in its own axes under the mounting in force."""
+
+    id: int
+    kind: MotionEventKind
+    at: datetime = Field(description="When it was strongest.")
+    start_at: datetime
+    duration_s: float
+    peak_mps2: float = Field(
+        description="Largest acceleration, gravity taken out: on the plan; of a pothole along the vehicle's vertical."
+    )
+    direction_deg: float | None = Field(
+        description="Where the push came from, anti-clockwise from forward: 0 the front, 90 the left, -90 the right; "
+        "null of a pothole."
+    )
+    speed_change_mps: tuple[float, float] = Field(description="Forward and to the left, from its start to its end.")
+    speed_mps: float | None = Field(description="Speed over ground before it; null when not known.")
+    mount: int = Field(description="Number of the mounting it was seen under.")
+    session: str
+    t: float = Field(description="Session clock when it was strongest, s.")
+    kept: bool = Field(description="The samples around it are there to be read: `/raw`, `/motion`.")
+
+
+class Origin(Document):
+    """Where east, north and up are zero."""
+
+    lat: float = Field(description="Degrees.")
+    lon: float = Field(description="Degrees.")
+    alt: float | None = Field(description="m; null when not known.")
+
+
+class MotionColumns(Document):
+    """Columns of equal length in time order; null is what is not known."""
+
+    session: list[str]
+    t: list[float] = Field(description="Session clock, s.")
+    at: list[datetime]
+    speed_mps: list[float | None] = Field(description="Forward; negative in reverse.")
+    longitudinal_mps2: list[float | None] = Field(description="Acceleration forward, gravity taken out.")
+    lateral_mps2: list[float | None] = Field(description="To the left.")
+    vertical_mps2: list[float | None] = Field(description="Up.")
+    yaw_rate_dps: list[float | None] = Field(description="Positive to the left.")
+    roll_deg: list[float | None] = Field(description="Positive to the right.")
+    pitch_deg: list[float | None] = Field(description="Positive nose down.")
+    heading_deg: list[float | None] = Field(description="Clockwise from north, 0 to 360.")
+    quaternion: list[Vector4 | None] = Field(description="q_nv, scalar first: vehicle to east, north, up.")
+    sideslip_deg: list[float | None] = Field(description="Of the velocity against forward, to the left.")
+    sideslip_sigma_deg: list[float | None]
+    east_m: list[float | None] = Field(description="From the origin.")
+    north_m: list[float | None]
+    up_m: list[float | None]
+    position_sigma_m: list[float | None] = Field(description="1 sigma per horizontal axis.")
+    dead_reckoned: list[bool] = Field(description="No fix came for a while: velocity and position are carried on.")
+
+
+class Motion(Document):
+    """Motion of the vehicle, computed from the samples kept, under the mounting that was in force then."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=True)
+
+    device_id: str
+    vehicle: VehicleClass = Field(description="The class of the device, `sedan` where none is given.")
+    start: datetime = Field(alias="from", description="Later than asked for where the mounting came into force later.")
+    end: datetime = Field(alias="to", description="Earlier than asked for where the mounting was in doubt earlier.")
+    mount: int | None = Field(description="Number of the mounting; null, and no rows, where none was in force.")
+    origin: Origin | None = Field(description="Null before the first fix.")
+    columns: MotionColumns
+
+
 # ---------------------------------------------------------------- devices and chunks
 
 
@@ -239,6 +316,7 @@ class DeviceDraft(Document):
     vehicle: Name | None = None
     notes: Notes | None = None
     accelerometer_calibration: AccelerometerCalibration | None = None
+    vehicle_class: VehicleClass | None = Field(None, description="Its usual dimensions are computed with; null: sedan.")
 
 
 class DevicePatch(Document):
@@ -251,6 +329,7 @@ class DevicePatch(Document):
         None,
         description="Tells on the chunks applied from now on; with a mounting, restart the installation afterwards.",
     )
+    vehicle_class: VehicleClass | None = None
 
 
 class Device(Document):
@@ -268,6 +347,7 @@ class Device(Document):
     open_alerts: int
     last_data_at: datetime | None
     revision: int
+    vehicle_class: VehicleClass | None
 
 
 class RegisteredDevice(Document):

@@ -84,6 +84,12 @@ class Settings(BaseSettings):
     receipt_days: float = Field(
         14.0, ge=1, description="Days in which a chunk that comes once more is known as a duplicate; later it gets 409."
     )
+    raw_retention_days: float = Field(
+        7.0,
+        ge=0,
+        description="Days the samples of devices are kept, from which motion is computed; 0: none are. "
+        "Those around an impact stay for as long as their device.",
+    )
     delivery_days: float = Field(30.0, ge=4, description="Days the deliveries of webhooks are kept.")
     audit_days: float = Field(730.0, gt=0, description="Days the audit trail is kept.")
     alert_stalled_minutes: float = Field(

@@ -29,6 +29,7 @@ class Device(NamedTuple):
     """the name as lists order it"""
     mount_status: str | None
     open_alerts: int
+    vehicle_class: str | None
 
 
 open_alerts = (
@@ -60,6 +61,7 @@ select = sa.select(
     devices.c.name_key,
     _mount_status,
     open_alerts,
+    devices.c.vehicle_class,
 ).join_from(devices, installations)
 _find = select.where(devices.c.id == sa.bindparam("id"))
 _pk = sa.select(devices.c.pk).where(devices.c.id == sa.bindparam("id"))
@@ -97,7 +99,7 @@ def _keys(texts: Sequence[str | None]) -> dict[str, str]:
 
 
 def edit(tx: WriteSession, pk: int, values: dict[str, Any]) -> None:
-    """Change the texts of a device, or its accelerometer's calibration."""
+    """Change the texts of a device, its accelerometer's calibration, or its vehicle's class."""
     if values:
         tx.execute(_edit, of_pk=pk, **values)
         tx.execute(_edit, of_pk=pk, **_keys(tx.connection.execute(_texts, {"pk": pk}).one()))

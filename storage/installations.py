@@ -32,6 +32,8 @@ class Installation(NamedTuple):
     revision: int
     watch: dict[str, Any] | None = None
     """what the rules of alerts remember, see `api/services/rules`"""
+    motion: bytes | None = None
+    """state of the detector of events; None: it begins anew"""
     accelerometer_calibration: dict[str, Any] | None = None
     """of the device, where it is kept"""
 

@@ -85,6 +85,7 @@ devices = sa.Table(
     sa.Column("created_at", Instant, nullable=False),
     sa.Column("search", sa.Text, nullable=False, server_default=""),
     sa.Column("name_key", NAME_KEY, nullable=False, server_default=""),
+    sa.Column("vehicle_class", sa.String(16)),
     sqlite_autoincrement=True,
 )
 _by_id, _by_name = (devices.c.id,), (devices.c.name_key, devices.c.id)
@@ -161,6 +162,24 @@ chunk_waits = chunks.c.state == sa.literal_column("'waiting'")
 """As written in the index, so that queries find it."""
 sa.Index("ix_chunks_waiting", chunks.c.session_pk, sqlite_where=chunk_waits, postgresql_where=chunk_waits)
 
+raw_chunks = sa.Table(
+    "raw_chunks",
+    metadata,
+    sa.Column("session_pk", BIG, primary_key=True, autoincrement=False),  # no foreign key, as below
+    sa.Column("seq", sa.Integer, primary_key=True, autoincrement=False),
+    _device(nullable=False),
+    sa.Column("t_first", sa.Double, nullable=False),
+    sa.Column("t_last", sa.Double, nullable=False),
+    sa.Column("received_at", Instant, nullable=False),
+    sa.Column("kept", sa.Boolean, nullable=False),
+    sa.Column("columns", sa.String(128), nullable=False),
+    sa.Column("content", sa.LargeBinary, nullable=False),  # last: SQLite reads a long row only as far as asked
+    sa.Index("ix_raw_chunks_device_pk_received_at", "device_pk", "received_at"),
+)
+raw_may_go = raw_chunks.c.kept.is_(sa.false())
+sa.Index("ix_raw_chunks_may_go", raw_chunks.c.received_at, sqlite_where=raw_may_go, postgresql_where=raw_may_go)
+"""Those that nothing keeps: however many are kept for ever, what goes is found without them."""
+
 installations = sa.Table(
     "installations",
     metadata,
@@ -176,6 +195,7 @@ installations = sa.Table(
     sa.Column("revision", sa.BigInteger, nullable=False),
     sa.Column("watch", sa.JSON(none_as_null=True)),
     _device_id(),
+    sa.Column("motion", sa.LargeBinary),
     sa.Index("ix_installations_stage_device_id", "stage", "device_id", postgresql_include=["device_pk"]),
     sa.Index("ix_installations_last_data_at_device_id", "last_data_at", "device_id", postgresql_include=["device_pk"]),
 )
@@ -219,6 +239,7 @@ mounts = sa.Table(
     sa.Column("sigma_deg", sa.JSON, nullable=False),
     sa.Column("verification", sa.JSON, nullable=False),
     sa.Column("status", sa.String(16), nullable=False),
+    sa.Column("ended_at", Instant),
 )
 mount_current = mounts.c.status != sa.literal_column("'superseded'")
 """As written in the index, so that queries find it."""
@@ -231,6 +252,31 @@ sa.Index(
 )
 mount_suspect = mounts.c.status == sa.literal_column("'suspect'")
 sa.Index("ix_mounts_suspect", mounts.c.device_pk, sqlite_where=mount_suspect, postgresql_where=mount_suspect)
+
+motion_events = sa.Table(
+    "motion_events",
+    metadata,
+    sa.Column("pk", BIG, primary_key=True),
+    _device(nullable=False),
+    sa.Column("session_pk", BIG, nullable=False),  # no foreign key, as above
+    sa.Column("seq", sa.Integer, nullable=False),
+    sa.Column("kind", sa.String(32), nullable=False),
+    sa.Column("t", sa.Double, nullable=False),
+    sa.Column("at", Instant, nullable=False),
+    sa.Column("data", sa.JSON, nullable=False),
+    sa.Index("ix_motion_events_device_pk_at_pk", "device_pk", "at", "pk"),
+    sa.Index("ix_motion_events_device_pk_kind_at_pk", "device_pk", "kind", "at", "pk"),
+    sqlite_autoincrement=True,
+)
+is_impact = motion_events.c.kind == sa.literal_column("'impact'")
+"""As written in the index, so that queries find it."""
+sa.Index(
+    "ix_motion_events_impacts",
+    motion_events.c.session_pk,
+    motion_events.c.t,
+    sqlite_where=is_impact,
+    postgresql_where=is_impact,
+)
 
 alerts = sa.Table(
     "alerts",

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import mount_current, mount_suspect, mounts, sessions
+from storage.models import Instant, microseconds, mount_current, mount_suspect, mounts, sessions
+from storage.prepared import Prepared
 
 IN_FORCE, SUSPECT, SUPERSEDED = "in_force", "suspect", "superseded"
 
@@ -21,20 +22,27 @@ class Mount(NamedTuple):
     sigma_deg: list[float]
     verification: dict[str, Any]
     status: str
+    ended_at: datetime | None
+    """since when it was in doubt, or superseded; None: it is in force, or that was not recorded yet"""
 
 
 COLUMNS = [sessions.c.started_at if name == "started_at" else mounts.c[name] for name in Mount._fields]
 """of a mounting with its session"""
 _select = sa.select(*COLUMNS).join_from(mounts, sessions)
 _current = (mounts.c.device_pk == sa.bindparam("of_device_pk")) & mount_current
-_find_current = _select.where(_current)
+_find_current = Prepared(_select.where(_current))
 _of_device = _select.where(mounts.c.device_pk == sa.bindparam("device_pk"))
 _find = _of_device.where(mounts.c.n == sa.bindparam("n"))
 _page = _of_device.order_by(mounts.c.n.desc()).limit(sa.bindparam("limit"))
 _last = sa.select(sa.func.max(mounts.c.n)).where(mounts.c.device_pk == sa.bindparam("device_pk"))
 _suspects = sa.select(sa.func.count()).select_from(mounts).where(mount_suspect)
 _add = sa.insert(mounts)
-_set_status = sa.update(mounts).where(_current)
+_at = sa.bindparam("at", type_=Instant)
+_set_status = sa.update(mounts).where(_current).values(ended_at=sa.func.coalesce(mounts.c.ended_at, _at))
+_confirmed_at = sa.type_coerce(sessions.c.started_at, sa.BigInteger) + mounts.c.t * 1e6
+_before = (
+    _of_device.where(_confirmed_at < sa.bindparam("end", type_=sa.BigInteger)).order_by(mounts.c.n.desc()).limit(1)
+)
 
 
 def add(
@@ -45,9 +53,10 @@ def add(
     quaternion: list[float],
     sigma_deg: list[float],
     verification: dict[str, Any],
+    at: datetime,
 ) -> int:
-    """Put a new mounting in force, in the place of the former one; give its number."""
-    supersede(tx, device_pk)
+    """Put a new mounting in force, in the place of the former one; give its number. `at`: when it was confirmed."""
+    supersede(tx, device_pk, at)
     n = (tx.value(_last, device_pk=device_pk) or 0) + 1
     tx.execute(
         _add,
@@ -63,14 +72,14 @@ def add(
     return n
 
 
-def supersede(tx: WriteSession, device_pk: int) -> None:
+def supersede(tx: WriteSession, device_pk: int, at: datetime) -> None:
     """The current mounting holds no longer."""
-    tx.execute(_set_status, of_device_pk=device_pk, status=SUPERSEDED)
+    tx.execute(_set_status, of_device_pk=device_pk, status=SUPERSEDED, at=at)
 
 
-def suspect(tx: WriteSession, device_pk: int) -> None:
+def suspect(tx: WriteSession, device_pk: int, at: datetime) -> None:
     """The current mounting is in doubt."""
-    tx.execute(_set_status, of_device_pk=device_pk, status=SUSPECT)
+    tx.execute(_set_status, of_device_pk=device_pk, status=SUSPECT, at=at)
 
 
 def suspects(tx: ReadSession, device_pk: int | None = None) -> int:
@@ -81,6 +90,11 @@ def suspects(tx: ReadSession, device_pk: int | None = None) -> int:
 def current(tx: ReadSession, device_pk: int) -> Mount | None:
     """Give the mounting in force, or the suspect one."""
     return tx.one(Mount, _find_current, of_device_pk=device_pk)
+
+
+def before(tx: ReadSession, device_pk: int, end: datetime) -> Mount | None:
+    """Give the newest mounting that was confirmed before a moment."""
+    return tx.one(Mount, _before, device_pk=device_pk, end=microseconds(end))
 
 
 def find(tx: ReadSession, device_pk: int, n: int) -> Mount | None:

@@ -20,9 +20,9 @@ _ALWAYS = frozenset({"t", *ACCELERATION, "lat", "lon", "alt", "speed", "course"}
 
 def write_native_csv(samples: Samples) -> bytes:
     """Write samples as native CSV, rounded to sensible decimals; columns nobody filled are left out."""
-    columns = {"t": samples.t, **_by_name(ACCELERATION, samples.f_s), **_by_name(RATE, samples.w_s)}
+    columns = {"t": samples.t, **by_name(ACCELERATION, samples.f_s), **by_name(RATE, samples.w_s)}
     if samples.m_s is not None:
-        columns |= _by_name(FIELD, samples.m_s)
+        columns |= by_name(FIELD, samples.m_s)
     others = (samples.steer, samples.temperature, samples.pressure)
     columns |= {name: values for name, values in zip(OTHERS, others, strict=True) if values is not None}
     table = {
@@ -31,7 +31,7 @@ def write_native_csv(samples: Samples) -> bytes:
         if _kept(name, values)
     }
     table["fix"] = _spread(samples.fix_valid.astype(np.int8), samples, samples.fix_row.size)
-    for name, values in _gps(samples).items():
+    for name, values in gps_columns(samples).items():
         if _kept(name, values):
             table[name] = _spread(_rounded(name, values), samples, samples.fix_row.size)
     out = BytesIO()
@@ -40,13 +40,14 @@ def write_native_csv(samples: Samples) -> bytes:
     return out.getvalue()
 
 
-def _by_name(names: tuple[str, ...], values: Floats) -> Columns:
+def by_name(names: tuple[str, ...], values: Floats) -> Columns:
+    """Give the columns (N,) of values (N, K) by their names."""
     return dict(zip(names, values.T, strict=True))
 
 
-def _gps(samples: Samples) -> Columns:
-    """Give the columns of the reports (M,) in the units of the file; a report without a fix is empty."""
-    columns = _by_name(GPS, np.where(samples.fix_valid[:, None], samples.fix, np.nan))
+def gps_columns(samples: Samples) -> Columns:
+    """Give the columns of the reports (M,) in the units of a log; a report without a fix is empty."""
+    columns = by_name(GPS, np.where(samples.fix_valid[:, None], samples.fix, np.nan))
     angles = ("lat", "lon", "course", "course_acc")
     return columns | {name: np.degrees(columns[name]) for name in angles}
 

@@ -2,8 +2,34 @@
 
 from fastapi import APIRouter
 
-from api.routes import alerts, audit, chunks, devices, fleet, installations, keys, session, stream, thresholds, webhooks
+from api.routes import (
+    alerts,
+    audit,
+    chunks,
+    devices,
+    fleet,
+    installations,
+    keys,
+    motion,
+    session,
+    stream,
+    thresholds,
+    webhooks,
+)
 
 api = APIRouter(prefix="/api/v1")
-for resource in (session, devices, chunks, installations, alerts, webhooks, fleet, thresholds, stream, keys, audit):
+for resource in (
+    session,
+    devices,
+    chunks,
+    installations,
+    motion,
+    alerts,
+    webhooks,
+    fleet,
+    thresholds,
+    stream,
+    keys,
+    audit,
+):
     api.include_router(resource.router)

@@ -60,7 +60,7 @@ def read_device(device_id: KnownId, context: CurrentContext) -> schemas.Device:
 def edit_device(
     device_id: KnownId, patch: schemas.DevicePatch, principal: Installer, context: CurrentContext
 ) -> schemas.Device:
-    """Change name, vehicle, notes or the accelerometer's calibration; what is left out stays, null clears it.
+    """Change what is known of a device; what is left out stays, null clears it.
 
     A calibration tells on the chunks applied from then on. A mounting found with other readings may be off by what the
     calibration corrects: restart the installation afterwards.

@@ -11,7 +11,9 @@ from api import metrics, schemas
 from api.formats.log import Reading
 from api.services import (
     alerting,
+    detecting,
     findings,
+    happenings,
     history,
     last_data,
     presenting,
@@ -22,11 +24,13 @@ from api.services import (
 )
 from api.services.context import Context
 from api.services.errors import UNKNOWN_DEVICE, NotFoundError, NotStillError, UnusableError
-from api.services.foresight import Foresight, advance
+from api.services.foresight import Foresight, advance, corrected
 from api.services.speed_trace import Trace
+from core.motion.events import MotionEvent
 from storage import installations, mounts
 from storage.database import WriteSession
 from storage.installations import Installation
+from storage.mounts import Mount
 from storage.sessions import Session
 
 log = logging.getLogger(__name__)
@@ -87,14 +91,18 @@ class Calibration:
     def begin(self, session: Session) -> None:
         """The device was switched on: a new session, a new clock."""
         self._state = core.begin_session(self.context.params, self.state)
-        self.row = self.row._replace(session_pk=session.pk, status=speed_trace.end_session(self.row.status))
+        self.row = self.row._replace(
+            session_pk=session.pk,
+            status=speed_trace.end_session(self.row.status),
+            motion=detecting.begin_session(self.row.motion),
+        )
 
     def restart(self) -> None:
         """The device was refitted on purpose: forget the mounting, keep the history."""
         self._state = core.restart(self.context.params, self.state)
-        mounts.supersede(self.tx, self.row.device_pk)
+        mounts.supersede(self.tx, self.row.device_pk, self.now)
         alerting.refitted(self.tx, self.row.device_pk, self.now)
-        self.row = self.row._replace(watch=rules.forget(self.row.watch, rules.OF_MOUNTING))
+        self.row = self.row._replace(watch=rules.forget(self.row.watch, rules.OF_MOUNTING), motion=None)
         self._show_anew()
         self.row = self.row._replace(since_session_pk=None, since_t=None, since_at=self.now)
 
@@ -121,7 +129,9 @@ class Calibration:
         if self.row.stage != before:
             self.row = self.row._replace(since_session_pk=None, since_t=None, since_at=self.now)
 
-    def apply(self, session: Session, reading: Reading, received_at: datetime) -> tuple[Session, core.Outcome | None]:
+    def apply(
+        self, session: Session, seq: int, reading: Reading, received_at: datetime
+    ) -> tuple[Session, core.Outcome | None]:
         """Advance by one chunk of the current session; give the session as it is then, and what the chunk did.
 
         Raises
@@ -143,8 +153,10 @@ class Calibration:
         session = session._replace(started_at=started_at)
         lag = self.now - started_at - timedelta(seconds=t_last)
         metrics.LAG.observe(max(lag.total_seconds(), 0.0))
+        mount = mounts.current(self.tx, self.row.device_pk)
         self._record(session, reading, outcome, received_at)
-        self._watch(session, reading.samples, outcome, received_at)
+        happened = self._detect(session, seq, reading.samples, outcome, mount)
+        self._watch(session, reading.samples, outcome, happened, received_at)
         return session, outcome
 
     def _advance(self, reading: Reading) -> tuple[core.State, core.Outcome]:
@@ -173,14 +185,37 @@ class Calibration:
             self._confirm(session, event, trace)
             alerting.end(self.tx, device_pk, [alerting.MOVED], "A new mounting was confirmed.", self.now)
         if event.kind == core.EventKind.ORIENTATION_CHANGED:
-            mounts.suspect(self.tx, device_pk)
+            mounts.suspect(self.tx, device_pk, self._moment(session, event.t))
         current = mounts.current(self.tx, device_pk)
         where = findings.Where(session.name, session.started_at, None if current is None else current.n)
         alerting.raise_for(self.tx, self.context, device_pk, event, where, self.now)
 
-    def _watch(self, session: Session, samples: core.Samples, outcome: core.Outcome, received_at: datetime) -> None:
+    def _detect(
+        self, session: Session, seq: int, samples: core.Samples, outcome: core.Outcome, mount: Mount | None
+    ) -> tuple[MotionEvent, ...]:
+        """Look for what happened to the vehicle; `mount` is the current one before the chunk."""
+        q_vs = np.array(mount.quaternion) if mount is not None and mount.status == mounts.IN_FORCE else None
+        seen = corrected(self.row.accelerometer_calibration, samples)
+        state, found = detecting.detect(self.row.motion, q_vs, outcome.events, seen)
+        self.row = self.row._replace(motion=state)
+        newest = mounts.current(self.tx, self.row.device_pk) if found else mount
+        confirmed = sum(event.kind is core.EventKind.CONFIRMED for event in outcome.events)
+        for before, event in found:
+            n = newest.n - confirmed + before if newest is not None else 0
+            happenings.record(self.tx, self.context, self.row.device_pk, (session, seq), event, n, self.now)
+        return tuple(event for _, event in found)
+
+    def _watch(
+        self,
+        session: Session,
+        samples: core.Samples,
+        outcome: core.Outcome,
+        happened: tuple[MotionEvent, ...],
+        received_at: datetime,
+    ) -> None:
         """Let the rules of the alerts see the chunk."""
-        watch = watching.observe(self.tx, self.context, self.row, session, samples, outcome, received_at, self.now)
+        seen = rules.see((session.pk, session.name, session.started_at), samples, outcome, happened, received_at)
+        watch = watching.observe(self.tx, self.context, self.row, seen, self.now)
         self.row = self.row._replace(watch=watch)
 
     def _confirm(self, session: Session, event: core.Event, trace: Trace | None) -> None:
@@ -194,7 +229,11 @@ class Calibration:
             event.quaternion.tolist(),
             presenting.degrees(event.sigma),
             presenting.drive_test(event.verification, trace),
+            self._moment(session, event.t),
         )
+
+    def _moment(self, session: Session, t: float) -> datetime:
+        return self.now if session.started_at is None else presenting.utc(session.started_at, t)
 
     @property
     def _trace(self) -> Trace | None:

@@ -70,6 +70,20 @@ class NotStillError(ConflictError):
     title = "The vehicle is not standing still"
 
 
+class SeveralSessionsError(ConflictError):
+    """Samples of several sessions do not fit into one log."""
+
+    kind = "several-sessions"
+    title = "There are several sessions"
+
+
+class LongSpanError(ServiceError):
+    """More than is computed at once."""
+
+    kind = "span-too-long"
+    title = "The span is too long"
+
+
 class UnusableError(ServiceError):
     """The samples cannot be used."""
 

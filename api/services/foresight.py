@@ -12,7 +12,7 @@ import numpy as np
 
 import core
 from api import metrics
-from api.formats import ParsedLog
+from api.formats import ParsedLog, raw
 from api.formats.log import Reading
 from api.services.context import Context
 from storage import installations, sessions
@@ -36,6 +36,8 @@ class Foresight(NamedTuple):
     outcome: core.Outcome
     snapshot: bytes
     """of the state"""
+    raw: bytes | None
+    """the samples as they are kept, None: they are not"""
 
     def holds(self, reading: Reading, before: bytes | None, correction: Correction) -> bool:
         """Tell whether this is what `advance` would give."""
@@ -70,7 +72,13 @@ def foresee(context: Context, stand: Stand, parsed: ParsedLog) -> Foresight | No
         after, outcome = advance(context.params, correction, state, reading.samples)
     except (core.SnapshotError, core.SampleError):
         return None  # the transaction says what is wrong
-    return Foresight(session_context, reading, before, correction, after, outcome, core.encode(after))
+    kept = pack(context, reading)
+    return Foresight(session_context, reading, before, correction, after, outcome, core.encode(after), kept)
+
+
+def pack(context: Context, reading: Reading) -> bytes | None:
+    """Give the samples of a chunk as they are kept; None when they are not."""
+    return raw.pack(reading.samples) if context.settings.raw_retention_days > 0 else None
 
 
 def _state(params: core.Parameters, row: Installation, begins: bool) -> tuple[core.State, bytes]:
@@ -86,8 +94,14 @@ def advance(
 ) -> tuple[core.State, core.Outcome]:
     """Advance by samples, less the accelerometer's errors where they are known; what is left of its bias is small."""
     if correction is not None:
-        calibration = core.AccelerometerCalibration(np.array(correction["gain"]), np.array(correction["offset"]))
-        samples = replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))
         params = core.calibrated(params)
     with metrics.estimator():
-        return core.advance(params, state, samples)
+        return core.advance(params, state, corrected(correction, samples))
+
+
+def corrected(correction: Correction, samples: core.Samples) -> core.Samples:
+    """Give samples less the accelerometer's errors, where they are known."""
+    if correction is None:
+        return samples
+    calibration = core.AccelerometerCalibration(np.array(correction["gain"]), np.array(correction["offset"]))
+    return replace(samples, f_s=core.accelerometer.apply(calibration, samples.f_s))

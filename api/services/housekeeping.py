@@ -39,6 +39,7 @@ JOBS = (
     Job("last uses of keys", 60.0, write_uses, leader_only=False),
     Job("fine history to coarse", 60.0, retention.coarsen),
     Job("rows kept no longer", 60.0, retention.tidy),
+    Job("samples kept no longer", 60.0, retention.forget_samples),
 )
 PAUSE = 0.05
 """s between two calls of a job that has more to do, in which others may write"""

@@ -11,7 +11,7 @@ from datetime import timedelta
 from typing import NamedTuple
 
 from api import schemas
-from api.formats import FormatError, Limits, ParsedLog, Reading, parse
+from api.formats import FormatError, Limits, ParsedLog, Reading, parse, raw
 from api.services import last_data
 from api.services.calibration import Calibration, last_time
 from api.services.context import Context
@@ -22,10 +22,11 @@ from api.services.errors import (
     SessionEndedError,
     UnusableError,
 )
-from api.services.foresight import Foresight
-from storage import chunks, sessions
+from api.services.foresight import Foresight, pack
+from storage import chunks, raw_chunks, sessions
 from storage.chunks import APPLIED, WAITING, Body, Receipt, Waiting
 from storage.database import WriteSession
+from storage.raw_chunks import RawChunk
 from storage.sessions import Session
 
 log = logging.getLogger(__name__)
@@ -211,12 +212,28 @@ def _apply_waiting(calibration: Calibration, session: Session, seq: int) -> None
 
 def _apply(calibration: Calibration, session: Session, receipt: Receipt, reading: Reading) -> Receipt:
     """Advance the estimator by one chunk and the session by one number."""
-    session, outcome = calibration.apply(session, reading, receipt.received_at)
+    session, outcome = calibration.apply(session, receipt.seq, reading, receipt.received_at)
     sessions.save(calibration.tx, session._replace(next_seq=receipt.seq + 1))
     if outcome is None:
         return receipt._replace(state=APPLIED)
+    _keep(calibration, receipt, reading)
     rejected = last_data.rejected(reading, outcome)
     return receipt._replace(state=APPLIED, samples=outcome.samples, fixes=outcome.fixes, rejected=rejected)
+
+
+def _keep(calibration: Calibration, receipt: Receipt, reading: Reading) -> None:
+    """Keep the samples as they came."""
+    foresight = calibration.foresight
+    if foresight is not None and foresight.reading is reading:
+        content = foresight.raw
+    else:
+        content = pack(calibration.context, reading)
+    if content is None:
+        return
+    device_pk, columns = calibration.row.device_pk, " ".join(raw.names(content))
+    span = float(reading.samples.t[0]), float(reading.samples.t[-1])
+    chunk = RawChunk(receipt.session_pk, receipt.seq, device_pk, *span, receipt.received_at, columns, content)
+    raw_chunks.add(calibration.tx, chunk)
 
 
 def _present(session: str, receipt: Receipt, duplicate: bool, parsed: ParsedLog) -> schemas.Chunk:

@@ -13,7 +13,8 @@ import numpy as np
 from api.services.context import Context
 from api.services.history import SKETCH
 from api.services.history_rows import Rows, spaced, unpack
-from storage import coarse_estimates, estimates, events, retention
+from core.motion.events import SECONDS_AFTER, SECONDS_BEFORE
+from storage import coarse_estimates, estimates, events, raw_chunks, retention
 from storage.coarse_estimates import Day, day_of
 from storage.database import WriteSession
 from storage.estimates import OldBlock
@@ -23,6 +24,8 @@ BLOCKS = 300
 """blocks of fine history made coarse in one transaction"""
 ROWS = 1000
 """rows removed in one transaction"""
+RAW_ROWS = 50
+"""the same of samples, which are some 100 kB each"""
 COARSE = 60.0
 """s between two rows of coarse history"""
 DAY_US = timedelta(days=1) // MICROSECOND
@@ -77,6 +80,13 @@ def tidy(context: Context) -> bool:
         _remove(context, lambda tx: retention.coarse_history(tx, last_day, ROWS)),
     ]
     return any(left)
+
+
+def forget_samples(context: Context) -> bool:
+    """Remove some of the samples kept no longer, but for those around an impact; True when more may be left."""
+    before = _ago(context, context.settings.raw_retention_days)
+    with context.database.write() as tx:
+        return raw_chunks.remove(tx, before, (SECONDS_BEFORE, SECONDS_AFTER), RAW_ROWS) >= RAW_ROWS
 
 
 def _remove(context: Context, work: Callable[[WriteSession], int]) -> bool:

@@ -4,9 +4,12 @@ import numpy as np
 
 import core
 from api.formats import parse
-from api.services import keyring
+from api.services import detecting, keyring
 from api.services.context import Context
+from core.motion import VEHICLES, reconstruct
 from storage import events, meta, migrate
+
+LEVEL = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def prepare(context: Context) -> str | None:
@@ -23,7 +26,7 @@ def prepare(context: Context) -> str | None:
 
 
 def warm_up(context: Context) -> None:
-    """Compile the reader of CSV and the estimator, with and without a gyroscope, on two seconds of a parked vehicle."""
+    """Compile what reads CSV, estimates, detects events and reconstructs, on two seconds of a parked vehicle."""
     parse(b"t,ax,ay,az,fix,speed,course\n0,0,0,9.81,1,0,0\n", "text/csv", None)
     t = np.arange(0.0, 2.0, 0.01)
     f_s = np.tile([0.0, 0.0, 9.81], (t.size, 1))
@@ -35,3 +38,5 @@ def warm_up(context: Context) -> None:
         state = core.begin_session(context.params, core.initial_state(context.params))
         state, _ = core.advance(context.params, state, samples)
         core.decode(core.encode(state))
+        detecting.detect(None, LEVEL, (), samples)
+        reconstruct(VEHICLES["sedan"], LEVEL, samples)

@@ -12,6 +12,7 @@ from api import schemas
 from api.services.context import Context
 from api.services.rules import Limits
 from api.settings import Settings
+from core.motion import events
 
 ESTIMATOR = {"settling": "settling", "verification": "verification", "change": "change", "fault": "alerts"}
 """group by stage of the estimator"""
@@ -29,6 +30,7 @@ SETTINGS = {
     "history_days": "retention",
     "coarse_history_days": "retention",
     "receipt_days": "retention",
+    "raw_retention_days": "retention",
     "delivery_days": "retention",
     "audit_days": "retention",
 }
@@ -39,7 +41,12 @@ UNITS = {"bytes": "bytes", "timeout": "s", "minutes": "min", "hours": "h", "days
 
 def listed(context: Context) -> schemas.Thresholds:
     """Give them all, group by group."""
-    found = [*_of_estimator(context.params), *_of_rules(context.settings), *_of_settings(context.settings)]
+    found = [
+        *_of_estimator(context.params),
+        *_of_events(),
+        *_of_rules(context.settings),
+        *_of_settings(context.settings),
+    ]
     groups = get_args(schemas.ThresholdGroup)
     return schemas.Thresholds(items=sorted(found, key=lambda row: groups.index(row.group)))
 
@@ -47,6 +54,10 @@ def listed(context: Context) -> schemas.Thresholds:
 def _of_estimator(params: core.Parameters) -> Iterator[schemas.Threshold]:
     for stage, group in ESTIMATOR.items():
         yield from (_row(stage, group, found) for found in core.thresholds(getattr(params, stage)))
+
+
+def _of_events() -> Iterator[schemas.Threshold]:
+    return (_row("events", "events", found) for found in core.thresholds(events.DEFAULT))
 
 
 def _of_rules(settings: Settings) -> Iterator[schemas.Threshold]:

@@ -3,15 +3,13 @@
 import logging
 from datetime import datetime
 
-import core
 from api.services import alerting, publishing, rules
 from api.services.context import Context
-from api.services.rules import Limits, Watch, device_silent
+from api.services.rules import Limits, Seen, Watch, device_silent
 from storage import installations
 from storage.alerts import find_open
 from storage.database import WriteSession
 from storage.installations import Installation
-from storage.sessions import Session
 
 log = logging.getLogger(__name__)
 
@@ -19,19 +17,9 @@ BATCH = 100
 """devices looked up at once; each is then a transaction of its own"""
 
 
-def observe(
-    tx: WriteSession,
-    context: Context,
-    row: Installation,
-    session: Session,
-    samples: core.Samples,
-    outcome: core.Outcome,
-    received_at: datetime,
-    now: datetime,
-) -> Watch:
+def observe(tx: WriteSession, context: Context, row: Installation, seen: Seen, now: datetime) -> Watch:
     """Let the rules see a chunk that has just been applied, raise and end alerts; give what they remember."""
     watch = _first(tx, row.device_pk) if row.watch is None else row.watch
-    seen = rules.see((session.pk, session.name, session.started_at), samples, outcome, received_at)
     watch, said = rules.step(watch, seen, Limits.of(context.settings))
     for kind, verdict in said:
         if isinstance(verdict, rules.Finding):

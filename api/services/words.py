@@ -1,4 +1,4 @@
-"""How a device moved, in the words of somebody who sits in the vehicle."""
+"""How a device moved, and where a push came from, in the words of somebody who sits in the vehicle."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,14 @@ PARTS = (
 """Turning about the vehicle's x, y and z axis: what it is called, and where to when positive and when negative."""
 NOTABLE = 0.25
 """share of the axis' length below which a component is not worth a word: 14 degrees off a vehicle axis"""
+
+SIDES = ("front", "front left", "left", "rear left", "rear", "rear right", "right", "front right")
+"""anti-clockwise, an eighth each"""
+
+
+def side(direction: float) -> str:
+    """Say where something came from; `direction` in rad, anti-clockwise from forward."""
+    return SIDES[round(direction / (np.pi / 4)) % len(SIDES)]
 
 
 def movement(angle: float | None, axis: NDArray[np.float64] | None) -> str:
@@ -44,5 +52,5 @@ def _part(k: int, size: str, positive: bool) -> str:
 
 
 def degrees_text(degrees: float) -> str:
-    """Give an angle >= 0 with the digits worth reading: "3.4" below ten degrees, "94" above."""
+    """Give a number >= 0, of degrees mostly, with the digits worth reading: "3.4" below ten, "94" above."""
     return f"{degrees:.1f}" if degrees < 9.95 else f"{degrees:.0f}"

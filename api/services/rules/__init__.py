@@ -13,6 +13,7 @@ from api.services.rules import (
     device_loose,
     device_silent,
     gps_lost,
+    harsh_driving,
     sensor_fault,
     verification_failing,
 )
@@ -30,6 +31,7 @@ RULES: tuple[Rule, ...] = (
     sensor_fault.RULE,
     device_silent.RULE,
     clock_fault.RULE,
+    harsh_driving.RULE,
 )
 OF_MOUNTING = ("orientation_changed", *(rule.kind for rule in RULES if rule.of_mounting))
 """Kinds of alerts that a deliberate refit ends."""

@@ -60,6 +60,10 @@ class Limits:
     clock_episode: float = MINUTE
     """s without anything wrong after which the next fault counts as another one"""
 
+    harsh_events: int = threshold(3, "events", "So much harsh driving in `harsh_window` raises `harsh_driving`.")
+    harsh_window: float = threshold(10 * MINUTE, "s", "Driving in which harsh driving is counted.")
+    harsh_quiet: float = threshold(30 * MINUTE, "s", "Data without harsh driving that end `harsh_driving`.")
+
     @classmethod
     def of(cls, settings: Settings) -> Self:
         """Take those that can be set from the settings."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 import core
 from api.services import findings, presenting
+from core.motion.events import MotionEvent
 from storage.alerts import Finding
 
 LONGEST_STEP = 10.0
@@ -49,6 +50,8 @@ class Seen(NamedTuple):
     faults: tuple[core.Fault, ...]
     """faults of the sensor that go on"""
     events: tuple[core.Event, ...]
+    happened: tuple[MotionEvent, ...] = ()
+    """events of the vehicle's motion"""
 
     def moment(self, t: float) -> str | None:
         """Give a time of the session's clock as RFC 3339, if its zero is known."""
@@ -80,7 +83,11 @@ class Rule(NamedTuple):
 
 
 def see(
-    session: tuple[int, str, datetime | None], samples: core.Samples, outcome: core.Outcome, received_at: datetime
+    session: tuple[int, str, datetime | None],
+    samples: core.Samples,
+    outcome: core.Outcome,
+    happened: tuple[MotionEvent, ...],
+    received_at: datetime,
 ) -> Seen:
     """Sum up a chunk with at least one sample; `session` is its number, name and zero of the clock."""
     t, now = samples.t, outcome.status
@@ -104,6 +111,7 @@ def see(
         now.needs.words,
         now.faults,
         outcome.events,
+        happened,
     )
 
 
@@ -114,6 +122,7 @@ def finding(
     measured: tuple[float, float, str],
     since: str | None = None,
     reason: str | None = None,
+    severity: str = "warning",
 ) -> Finding:
     """Give the alert of a rule; `measured` is what was seen, the threshold, and their unit."""
     value, threshold, unit = measured
@@ -127,7 +136,7 @@ def finding(
         "threshold": threshold,
         "unit": unit,
     }
-    return Finding(kind, "warning", message, findings.data(known))
+    return Finding(kind, severity, message, findings.data(known))
 
 
 def _span(t: Floats) -> float:

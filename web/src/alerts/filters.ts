@@ -13,6 +13,8 @@ export const KINDS = [
   "gps_lost",
   "device_silent",
   "clock_fault",
+  "impact",
+  "harsh_driving",
 ] as const satisfies readonly Alert["kind"][];
 
 export const UNFILTERED: AlertFilter = {

@@ -27,6 +27,8 @@ export function finding(alert: Alert): string {
   if (about === "verification_failing") return failed(alert.data);
   if (about === "device_silent") return silent(alert.data);
   if (about === "clock_fault") return clock(alert.data);
+  if (about === "impact") return hit(alert.data);
+  if (about === "harsh_driving") return harsh(alert.data);
   return t(`alerts.finding.${about}`);
 }
 
@@ -86,6 +88,36 @@ function clock({ seen, unit, reason }: Data): string {
   return words.includes("ahead")
     ? t("alerts.finding.clock_ahead", { seconds })
     : t("alerts.finding.clock_fault");
+}
+
+const SIDES = [
+  "front",
+  "front_left",
+  "left",
+  "rear_left",
+  "rear",
+  "rear_right",
+  "right",
+  "front_right",
+] as const;
+const KMH = 3.6;
+
+/** Where the push came from is told anti-clockwise from forward, an eighth of the circle each. */
+function hit({ direction_deg, speed_change_mps: change }: Data): string {
+  const direction = number(direction_deg);
+  if (direction === null || !Array.isArray(change)) return t("alerts.finding.impact_unknown");
+  const side = SIDES[(Math.round(direction / 45) + SIDES.length) % SIDES.length] ?? "front";
+  const [forward, left] = change.map((part) => number(part) ?? 0);
+  return t("alerts.finding.impact", {
+    side: t(`alerts.side.${side}`),
+    change: fixed(Math.hypot(forward ?? 0, left ?? 0) * KMH, 0),
+  });
+}
+
+function harsh(data: Data): string {
+  const count = number(data.seen);
+  if (count === null) return t("alerts.finding.harsh_driving_unknown");
+  return t("alerts.finding.harsh_driving", { number: whole(count) });
 }
 
 function number(value: unknown): number | null {

@@ -20,6 +20,7 @@ const row = (id: string, stage: Stage = "settling"): Device => ({
   vehicle: null,
   notes: null,
   accelerometer_calibration: null,
+  vehicle_class: null,
   created_at: "2025-11-22T09:00:00Z",
   stage,
   progress: 0.5,

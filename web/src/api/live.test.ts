@@ -28,6 +28,7 @@ const device = (over: Partial<Device> = {}): Device => ({
   vehicle: null,
   notes: null,
   accelerometer_calibration: null,
+  vehicle_class: null,
   created_at: "2025-11-22T09:00:00Z",
   stage: "settling",
   progress: 0.5,

@@ -119,7 +119,7 @@ export interface paths {
         head?: never;
         /**
          * Edit Device
-         * @description Change name, vehicle, notes or the accelerometer's calibration; what is left out stays, null clears it.
+         * @description Change what is known of a device; what is left out stays, null clears it.
          *
          *     A calibration tells on the chunks applied from then on. A mounting found with other readings may be off by what the
          *     calibration corrects: restart the installation afterwards.
@@ -325,6 +325,93 @@ export interface paths {
          * @description Give the mounting in force; still readable, and marked, when it is suspect.
          */
         get: operations["read_current_mount"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/devices/{device_id}/events": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Events
+         * @description List what happened to the vehicle while a mounting was in force, newest first.
+         */
+        get: operations["list_events"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/devices/{device_id}/events/{event_id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Event
+         * @description Read one of them.
+         */
+        get: operations["read_event"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/devices/{device_id}/motion": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Motion
+         * @description Compute how the vehicle moved, from the samples kept, under the mounting that was in force then.
+         *
+         *     The last 10 minutes of data where no period is named, 6 hours at most (422 `span-too-long`). Of more rows than asked
+         *     for those with the largest acceleration on the plan are given. Where no samples are kept, or no mounting was in
+         *     force (`mount` is null), the columns are empty. 503 when the process computes as much as it can.
+         */
+        get: operations["read_motion"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/devices/{device_id}/raw": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read Raw
+         * @description Give back the samples of one session as they were sent, as a log that the upload takes: native CSV or Arrow.
+         *
+         *     `Livella-Session` and `Livella-Session-Started-At` of the answer name the session and the zero of its clock. 409
+         *     `several-sessions` where the period has samples of several and none is named; the sentence names them.
+         */
+        get: operations["read_raw"];
         put?: never;
         post?: never;
         delete?: never;
@@ -727,7 +814,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            kind: "orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault";
+            kind: "orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault" | "impact" | "harsh_driving";
             /**
              * Severity
              * @enum {string}
@@ -959,6 +1046,8 @@ export interface components {
             last_data_at: string | null;
             /** Revision */
             revision: number;
+            /** Vehicle Class */
+            vehicle_class: ("city_car" | "sedan" | "suv" | "van" | "truck" | "bus") | null;
         };
         /**
          * DeviceChange
@@ -992,6 +1081,11 @@ export interface components {
             /** Notes */
             notes?: string | null;
             accelerometer_calibration?: components["schemas"]["AccelerometerCalibration"] | null;
+            /**
+             * Vehicle Class
+             * @description Its usual dimensions are computed with; null: sedan.
+             */
+            vehicle_class?: ("city_car" | "sedan" | "suv" | "van" | "truck" | "bus") | null;
         };
         /**
          * DevicePatch
@@ -1010,6 +1104,8 @@ export interface components {
             notes?: string | null;
             /** @description Tells on the chunks applied from now on; with a mounting, restart the installation afterwards. */
             accelerometer_calibration?: components["schemas"]["AccelerometerCalibration"] | null;
+            /** Vehicle Class */
+            vehicle_class?: ("city_car" | "sedan" | "suv" | "van" | "truck" | "bus") | null;
         };
         /**
          * Estimate
@@ -1347,6 +1443,197 @@ export interface components {
             before: string;
         };
         /**
+         * Motion
+         * @description Motion of the vehicle, computed from the samples kept, under the mounting that was in force then.
+         */
+        Motion: {
+            /** Device Id */
+            device_id: string;
+            /**
+             * Vehicle
+             * @description The class of the device, `sedan` where none is given.
+             * @enum {string}
+             */
+            vehicle: "city_car" | "sedan" | "suv" | "van" | "truck" | "bus";
+            /**
+             * From
+             * Format: date-time
+             * @description Later than asked for where the mounting came into force later.
+             */
+            from: string;
+            /**
+             * To
+             * Format: date-time
+             * @description Earlier than asked for where the mounting was in doubt earlier.
+             */
+            to: string;
+            /**
+             * Mount
+             * @description Number of the mounting; null, and no rows, where none was in force.
+             */
+            mount: number | null;
+            /** @description Null before the first fix. */
+            origin: components["schemas"]["Origin"] | null;
+            columns: components["schemas"]["MotionColumns"];
+        };
+        /**
+         * MotionColumns
+         * @description Columns of equal length in time order; null is what is not known.
+         */
+        MotionColumns: {
+            /** Session */
+            session: string[];
+            /**
+             * T
+             * @description Session clock, s.
+             */
+            t: number[];
+            /** At */
+            at: string[];
+            /**
+             * Speed Mps
+             * @description Forward; negative in reverse.
+             */
+            speed_mps: (number | null)[];
+            /**
+             * Longitudinal Mps2
+             * @description Acceleration forward, gravity taken out.
+             */
+            longitudinal_mps2: (number | null)[];
+            /**
+             * Lateral Mps2
+             * @description To the left.
+             */
+            lateral_mps2: (number | null)[];
+            /**
+             * Vertical Mps2
+             * @description Up.
+             */
+            vertical_mps2: (number | null)[];
+            /**
+             * Yaw Rate Dps
+             * @description Positive to the left.
+             */
+            yaw_rate_dps: (number | null)[];
+            /**
+             * Roll Deg
+             * @description Positive to the right.
+             */
+            roll_deg: (number | null)[];
+            /**
+             * Pitch Deg
+             * @description Positive nose down.
+             */
+            pitch_deg: (number | null)[];
+            /**
+             * Heading Deg
+             * @description Clockwise from north, 0 to 360.
+             */
+            heading_deg: (number | null)[];
+            /**
+             * Quaternion
+             * @description q_nv, scalar first: vehicle to east, north, up.
+             */
+            quaternion: ([
+                number,
+                number,
+                number,
+                number
+            ] | null)[];
+            /**
+             * Sideslip Deg
+             * @description Of the velocity against forward, to the left.
+             */
+            sideslip_deg: (number | null)[];
+            /** Sideslip Sigma Deg */
+            sideslip_sigma_deg: (number | null)[];
+            /**
+             * East M
+             * @description From the origin.
+             */
+            east_m: (number | null)[];
+            /** North M */
+            north_m: (number | null)[];
+            /** Up M */
+            up_m: (number | null)[];
+            /**
+             * Position Sigma M
+             * @description 1 sigma per horizontal axis.
+             */
+            position_sigma_m: (number | null)[];
+            /**
+             * Dead Reckoned
+             * @description No fix came for a while: velocity and position are carried on.
+             */
+            dead_reckoned: boolean[];
+        };
+        /**
+         * MotionEvent
+         * @description Something that happened to the vehicle, seen in its own axes under the mounting in force.
+         */
+        MotionEvent: {
+            /** Id */
+            id: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "impact" | "harsh_braking" | "harsh_acceleration" | "harsh_cornering" | "pothole";
+            /**
+             * At
+             * Format: date-time
+             * @description When it was strongest.
+             */
+            at: string;
+            /**
+             * Start At
+             * Format: date-time
+             */
+            start_at: string;
+            /** Duration S */
+            duration_s: number;
+            /**
+             * Peak Mps2
+             * @description Largest acceleration, gravity taken out: on the plan; of a pothole along the vehicle's vertical.
+             */
+            peak_mps2: number;
+            /**
+             * Direction Deg
+             * @description Where the push came from, anti-clockwise from forward: 0 the front, 90 the left, -90 the right; null of a pothole.
+             */
+            direction_deg: number | null;
+            /**
+             * Speed Change Mps
+             * @description Forward and to the left, from its start to its end.
+             */
+            speed_change_mps: [
+                number,
+                number
+            ];
+            /**
+             * Speed Mps
+             * @description Speed over ground before it; null when not known.
+             */
+            speed_mps: number | null;
+            /**
+             * Mount
+             * @description Number of the mounting it was seen under.
+             */
+            mount: number;
+            /** Session */
+            session: string;
+            /**
+             * T
+             * @description Session clock when it was strongest, s.
+             */
+            t: number;
+            /**
+             * Kept
+             * @description The samples around it are there to be read: `/raw`, `/motion`.
+             */
+            kept: boolean;
+        };
+        /**
          * Mount
          * @description A confirmed mounting.
          */
@@ -1400,6 +1687,27 @@ export interface components {
             status: "in_force" | "suspect" | "superseded";
             verification: components["schemas"]["Verification"];
         };
+        /**
+         * Origin
+         * @description Where east, north and up are zero.
+         */
+        Origin: {
+            /**
+             * Lat
+             * @description Degrees.
+             */
+            lat: number;
+            /**
+             * Lon
+             * @description Degrees.
+             */
+            lon: number;
+            /**
+             * Alt
+             * @description m; null when not known.
+             */
+            alt: number | null;
+        };
         /** Page[Alert] */
         Page_Alert_: {
             /** Items */
@@ -1434,6 +1742,16 @@ export interface components {
         Page_Key_: {
             /** Items */
             items: components["schemas"]["Key"][];
+            /**
+             * Next Cursor
+             * @description Give it as `cursor` to get the next page; null on the last page.
+             */
+            next_cursor: string | null;
+        };
+        /** Page[MotionEvent] */
+        Page_MotionEvent_: {
+            /** Items */
+            items: components["schemas"]["MotionEvent"][];
             /**
              * Next Cursor
              * @description Give it as `cursor` to get the next page; null on the last page.
@@ -1682,7 +2000,7 @@ export interface components {
              * Group
              * @enum {string}
              */
-            group: "settling" | "verification" | "change" | "alerts" | "upload" | "retention";
+            group: "settling" | "verification" | "change" | "events" | "alerts" | "upload" | "retention";
             /**
              * Value
              * @description `infinite` is the only text.
@@ -1757,7 +2075,7 @@ export interface components {
             /** Url */
             url: string;
             /** Kinds */
-            kinds: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault")[] | null;
+            kinds: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault" | "impact" | "harsh_driving")[] | null;
             /** Severities */
             severities: ("info" | "warning" | "critical")[] | null;
             /**
@@ -1841,7 +2159,7 @@ export interface components {
              * Kinds
              * @description Kinds of alerts it is called for; null for all.
              */
-            kinds?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault")[] | null;
+            kinds?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault" | "impact" | "harsh_driving")[] | null;
             /**
              * Severities
              * @description Severities of alerts it is called for; null for all.
@@ -1871,7 +2189,7 @@ export interface components {
              */
             url: string;
             /** Kinds */
-            kinds?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault")[] | null;
+            kinds?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault" | "impact" | "harsh_driving")[] | null;
             /** Severities */
             severities?: ("info" | "warning" | "critical")[] | null;
             /**
@@ -2083,7 +2401,7 @@ export interface operations {
                 stage?: ("waiting" | "aligning" | "settling" | "verifying" | "confirmed") | null;
                 has_open_alert?: boolean | null;
                 /** @description With an open alert of this kind. */
-                alert_kind?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault") | null;
+                alert_kind?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault" | "impact" | "harsh_driving") | null;
                 /** @description With an open alert of this severity; of that kind, if both. */
                 alert_severity?: ("info" | "warning" | "critical") | null;
                 /** @description With a mounting that is so. */
@@ -2619,11 +2937,163 @@ export interface operations {
             };
         };
     };
+    list_events: {
+        parameters: {
+            query?: {
+                /** @description RFC 3339. */
+                from?: string | null;
+                /** @description RFC 3339. */
+                to?: string | null;
+                kind?: ("impact" | "harsh_braking" | "harsh_acceleration" | "harsh_cornering" | "pothole") | null;
+                /** @description Items on a page. */
+                limit?: number;
+                /** @description `next_cursor` of the page before. */
+                cursor?: string | null;
+            };
+            header?: never;
+            path: {
+                device_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Page_MotionEvent_"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_event: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                event_id: number;
+                device_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MotionEvent"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_motion: {
+        parameters: {
+            query?: {
+                /** @description RFC 3339. */
+                from?: string | null;
+                /** @description RFC 3339. */
+                to?: string | null;
+                /** @description Rows at most. */
+                max_points?: number;
+            };
+            header?: never;
+            path: {
+                device_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Motion"];
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_raw: {
+        parameters: {
+            query?: {
+                /** @description RFC 3339. */
+                from?: string | null;
+                /** @description RFC 3339. */
+                to?: string | null;
+                /** @description Needed where there are several. */
+                session?: string | null;
+                /** @description Goes before `Accept`; `csv` if neither is said. */
+                format?: ("arrow" | "csv") | null;
+            };
+            header?: never;
+            path: {
+                device_id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                    "application/vnd.apache.arrow.stream": string;
+                };
+            };
+            /** @description Problem details (RFC 9457) */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_alerts: {
         parameters: {
             query?: {
                 state?: ("open" | "acknowledged" | "resolved") | null;
-                kind?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault") | null;
+                kind?: ("orientation_changed" | "device_loose" | "calibration_stalled" | "verification_failing" | "gps_lost" | "sensor_fault" | "device_silent" | "clock_fault" | "impact" | "harsh_driving") | null;
                 severity?: ("info" | "warning" | "critical") | null;
                 device_id?: string | null;
                 /** @description Opened at or after. */

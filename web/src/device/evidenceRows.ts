@@ -19,6 +19,12 @@ const FIELDS: Record<Label, Words> = {
   threshold: measured,
   angle_deg: (value) => numberText(value, degreesText),
   axis: axisText,
+  direction_deg: (value) => numberText(value, degreesText),
+  peak_mps2: (value) => numberText(value, (peak) => `${significant(peak, 3)} m/s²`),
+  duration_s: (value) => numberText(value, (seconds) => `${significant(seconds, 3)} s`),
+  speed_change_mps: (value) =>
+    isNumbers(value) ? `${value.map(speedText).join(" / ")} m/s` : shortened(value),
+  speed_mps: (value) => numberText(value, (speed) => `${speedText(speed)} m/s`),
   fault: faultText,
   reason: (value) => (typeof value === "string" ? reasonText(value) : shortened(value)),
   mount: (value) => t("history.evidence.number", { number: shortened(value) }),
@@ -30,7 +36,7 @@ const FIELDS: Record<Label, Words> = {
   t: secondsText,
 };
 /** Told by the chart, or together with another field. */
-const ELSEWHERE = new Set(["evidence", "unit"]);
+const ELSEWHERE = new Set(["evidence", "unit", "event"]);
 
 /** The rest of an alert's data, a line each. */
 export function evidenceRows(data: AlertData, kind: string): { name: string; label: string; text: string }[] {
@@ -67,6 +73,7 @@ const CLOCK: Record<string, string> = {
 const UNITS: Record<string, (value: number) => string> = {
   s: (value) => (value < 60 ? `${significant(value, 3)} s` : duration(value)),
   h: (value) => `${significant(value, 3)} h`,
+  events: (count) => t("history.evidence.events", { count, number: significant(count, 3) }),
   tests: (count) => t("history.evidence.tests", { count, number: significant(count, 3) }),
   "share of samples": (value) => t("history.evidence.percent", { number: significant(100 * value, 3) }),
   "per cent": (value) => t("history.evidence.percent", { number: significant(value, 3) }),
@@ -81,6 +88,8 @@ function measured(value: unknown, { unit }: AlertData): string {
 function numberText(value: unknown, words: (value: number) => string): string {
   return typeof value === "number" ? words(value) : shortened(value);
 }
+
+const speedText = (speed: number): string => significant(speed, 3);
 
 function secondsText(value: unknown): string {
   return numberText(value, (seconds) => `${fixed(seconds, 1)} s`);

@@ -11,6 +11,8 @@ export const alerts = {
     sensor_fault: "Sensor fault",
     device_silent: "Device silent",
     clock_fault: "Clock fault",
+    impact: "Impact",
+    harsh_driving: "Harsh driving",
   },
   severity: { info: "Information", warning: "Warning", critical: "Critical" },
   state: { open: "Open", acknowledged: "Acknowledged", resolved: "Resolved" },
@@ -36,6 +38,20 @@ export const alerts = {
     clock_ahead: "The clock is {{seconds}} s ahead of the time of day",
     clock_fast: "The clock is fast by {{percent}} %",
     clock_fault: "The device’s clock is wrong",
+    impact: "The vehicle was hit from the {{side}}, its speed changed by {{change}} km/h",
+    impact_unknown: "The vehicle was hit",
+    harsh_driving: "{{number}} harsh manoeuvres within 10 minutes of driving",
+    harsh_driving_unknown: "Harsh manoeuvres come one after the other",
+  },
+  side: {
+    front: "front",
+    front_left: "front left",
+    left: "left",
+    rear_left: "rear left",
+    rear: "rear",
+    rear_right: "rear right",
+    right: "right",
+    front_right: "front right",
   },
   movement: {
     whole: "moved by {{degrees}}",
@@ -61,6 +77,9 @@ export const alerts = {
     device_silent: "A device that has sent before sends nothing any more.",
     clock_fault:
       "Within a power-up the device’s clock must run evenly and never be set; otherwise its data fit nothing.",
+    impact: "A push too strong and too short for driving; it stays open until somebody resolves it.",
+    harsh_driving:
+      "The vehicle brakes, accelerates or corners harder than driving calls for, again and again.",
   },
   remedy: {
     orientation_changed:
@@ -78,6 +97,8 @@ export const alerts = {
     device_silent:
       "Check its power, its network and its key. When the vehicle is laid up, resolve the alert.",
     clock_fault: "Update the device’s software; switch it off and on; replace it if it comes back.",
+    impact: "Ask how the driver and the vehicle are; the readings around the impact are kept.",
+    harsh_driving: "Talk to the driver; the events of the device tell when and how.",
   },
   card: {
     more: "Details",

@@ -108,6 +108,8 @@ export const history = {
     number: "no. {{number}}",
     tests_one: "{{number}} test",
     tests_other: "{{number}} tests",
+    events_one: "{{number}} event",
+    events_other: "{{number}} events",
     percent: "{{number}} %",
     label: {
       session: "Session",
@@ -124,6 +126,11 @@ export const history = {
       reason: "Reason",
       seen: "Seen",
       threshold: "Raised from",
+      direction_deg: "Pushed from, to the left of ahead",
+      peak_mps2: "Strongest",
+      duration_s: "Lasted",
+      speed_change_mps: "Speed changed, forward and left",
+      speed_mps: "Speed before",
     },
     seen: {
       calibration_stalled: "Driven without a mounting",
@@ -133,6 +140,7 @@ export const history = {
       clock_s: "Clock is off by",
       clock_share: "Samples that repeat a time",
       clock_rate: "Clock is fast by",
+      harsh_driving: "Harsh manoeuvres",
     },
     fault: {
       left_handed: "Axes are a mirror image (left-handed)",

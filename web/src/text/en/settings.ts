@@ -140,6 +140,7 @@ export const settings = {
       settling: "Settling: when an estimate is good enough",
       verification: "Drive test",
       change: "Noticing that a device was moved",
+      events: "What happens to a vehicle",
       alerts: "Alerts",
       upload: "Uploads",
       retention: "How long things are kept",

@@ -13,6 +13,8 @@ export const alerts: Translated<typeof en.alerts> = {
     sensor_fault: "Guasto del sensore",
     device_silent: "Dispositivo muto",
     clock_fault: "Guasto dell’orologio",
+    impact: "Urto",
+    harsh_driving: "Guida brusca",
   },
   severity: { info: "Informazione", warning: "Attenzione", critical: "Critico" },
   state: { open: "Aperto", acknowledged: "Preso in carico", resolved: "Risolto" },
@@ -38,6 +40,20 @@ export const alerts: Translated<typeof en.alerts> = {
     clock_ahead: "L’orologio è avanti di {{seconds}} s rispetto all’ora",
     clock_fast: "L’orologio corre troppo, del {{percent}} %",
     clock_fault: "L’orologio del dispositivo è sbagliato",
+    impact: "Il veicolo è stato urtato {{side}}, la sua velocità è cambiata di {{change}} km/h",
+    impact_unknown: "Il veicolo è stato urtato",
+    harsh_driving: "{{number}} manovre brusche in 10 minuti di guida",
+    harsh_driving_unknown: "Le manovre brusche si susseguono",
+  },
+  side: {
+    front: "davanti",
+    front_left: "davanti a sinistra",
+    left: "da sinistra",
+    rear_left: "dietro a sinistra",
+    rear: "da dietro",
+    rear_right: "dietro a destra",
+    right: "da destra",
+    front_right: "davanti a destra",
   },
   movement: {
     whole: "spostato di {{degrees}}",
@@ -66,6 +82,10 @@ export const alerts: Translated<typeof en.alerts> = {
     device_silent: "Un dispositivo che prima inviava dati non ne invia più.",
     clock_fault:
       "Da un’accensione all’altra l’orologio del dispositivo deve procedere in modo regolare, senza mai essere regolato; altrimenti i suoi dati non si accordano con nulla.",
+    impact:
+      "Una spinta troppo forte e troppo breve per la guida; resta aperto finché qualcuno non lo risolve.",
+    harsh_driving:
+      "Il veicolo frena, accelera o curva, più e più volte, più bruscamente di quanto la guida richieda.",
   },
   remedy: {
     orientation_changed:
@@ -86,6 +106,8 @@ export const alerts: Translated<typeof en.alerts> = {
       "Controllare alimentazione, rete e chiave. Se il veicolo è fermo da tempo, risolvere l’avviso.",
     clock_fault:
       "Aggiornare il software del dispositivo; spegnerlo e riaccenderlo; sostituirlo se il guasto si ripresenta.",
+    impact: "Chiedere come stanno il conducente e il veicolo; le misure attorno all’urto sono conservate.",
+    harsh_driving: "Parlarne con il conducente; gli eventi del dispositivo dicono quando e come.",
   },
   card: {
     more: "Dettagli",

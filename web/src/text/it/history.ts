@@ -110,6 +110,8 @@ export const history: Translated<typeof en.history> = {
     number: "n. {{number}}",
     tests_one: "{{number}} prova",
     tests_other: "{{number}} prove",
+    events_one: "{{number}} evento",
+    events_other: "{{number}} eventi",
     percent: "{{number}} %",
     label: {
       session: "Sessione",
@@ -126,6 +128,11 @@ export const history: Translated<typeof en.history> = {
       reason: "Motivo",
       seen: "Visto",
       threshold: "Avvisa a partire da",
+      direction_deg: "Spinta da, a sinistra rispetto all’avanti",
+      peak_mps2: "Massimo",
+      duration_s: "Durata",
+      speed_change_mps: "La velocità è cambiata, in avanti e a sinistra",
+      speed_mps: "Velocità prima",
     },
     seen: {
       calibration_stalled: "Guida senza montaggio",
@@ -135,6 +142,7 @@ export const history: Translated<typeof en.history> = {
       clock_s: "Orologio fuori di",
       clock_share: "Campioni che ripetono un tempo",
       clock_rate: "L’orologio avanza del",
+      harsh_driving: "Manovre brusche",
     },
     fault: {
       left_handed: "Gli assi sono un’immagine speculare (sinistrorsi)",

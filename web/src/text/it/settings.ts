@@ -143,6 +143,7 @@ export const settings: Translated<typeof en.settings> = {
       settling: "Assestamento: quando una stima è abbastanza buona",
       verification: "Prova su strada",
       change: "Riconoscere un dispositivo spostato",
+      events: "Che cosa accade a un veicolo",
       alerts: "Avvisi",
       upload: "Invio dei dati",
       retention: "Per quanto tempo si conserva",
