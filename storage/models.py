@@ -176,7 +176,7 @@ raw_chunks = sa.Table(
     sa.Column("content", sa.LargeBinary, nullable=False),  # last: SQLite reads a long row only as far as asked
     sa.Index("ix_raw_chunks_device_pk_received_at", "device_pk", "received_at"),
 )
-raw_may_go = raw_chunks.c.kept.is_(sa.false())
+raw_may_go = raw_chunks.c.kept == sa.false()
 sa.Index("ix_raw_chunks_may_go", raw_chunks.c.received_at, sqlite_where=raw_may_go, postgresql_where=raw_may_go)
 """Those that nothing keeps: however many are kept for ever, what goes is found without them."""
 

@@ -25,6 +25,11 @@ class Mount(NamedTuple):
     ended_at: datetime | None
     """since when it was in doubt, or superseded; None: it is in force, or that was not recorded yet"""
 
+    @property
+    def in_force(self) -> bool:
+        """True while nothing speaks against it."""
+        return self.status == IN_FORCE
+
 
 COLUMNS = [sessions.c.started_at if name == "started_at" else mounts.c[name] for name in Mount._fields]
 """of a mounting with its session"""

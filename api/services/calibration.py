@@ -24,7 +24,7 @@ from api.services import (
 )
 from api.services.context import Context
 from api.services.errors import UNKNOWN_DEVICE, NotFoundError, NotStillError, UnusableError
-from api.services.foresight import Foresight, advance, corrected
+from api.services.foresight import Beginning, Foresight, advance, detect
 from api.services.speed_trace import Trace
 from core.motion.events import MotionEvent
 from storage import installations, mounts
@@ -194,9 +194,11 @@ class Calibration:
         self, session: Session, seq: int, samples: core.Samples, outcome: core.Outcome, mount: Mount | None
     ) -> tuple[MotionEvent, ...]:
         """Look for what happened to the vehicle; `mount` is the current one before the chunk."""
-        q_vs = np.array(mount.quaternion) if mount is not None and mount.status == mounts.IN_FORCE else None
-        seen = corrected(self.row.accelerometer_calibration, samples)
-        state, found = detecting.detect(self.row.motion, q_vs, outcome.events, seen)
+        beginning, foresight = Beginning.of(self.row, mount), self.foresight
+        if foresight is not None and outcome is foresight.outcome and beginning == foresight.beginning:
+            state, found = foresight.detection
+        else:
+            state, found = detect(beginning, self.row.accelerometer_calibration, outcome, samples)
         self.row = self.row._replace(motion=state)
         newest = mounts.current(self.tx, self.row.device_pk) if found else mount
         confirmed = sum(event.kind is core.EventKind.CONFIRMED for event in outcome.events)

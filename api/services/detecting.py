@@ -5,11 +5,11 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 import core
 from core.motion import events
 from core.motion.events import MotionEvent
-from core.quaternion import Floats
 
 log = logging.getLogger(__name__)
 
@@ -27,7 +27,7 @@ class _Part(NamedTuple):
     """Samples of a chunk under one mounting."""
 
     samples: core.Samples
-    q_vs: Floats | None
+    q_vs: ArrayLike | None
     """None: no mounting is in force"""
     confirmed: int
     """mountings that the chunk had confirmed before"""
@@ -38,7 +38,9 @@ def begin_session(state: bytes | None) -> bytes | None:
     return None if state is None else events.encode(events.begin_session(_load(state)))
 
 
-def detect(state: bytes | None, q_vs: Floats | None, changes: Iterable[core.Event], samples: core.Samples) -> Detection:
+def detect(
+    state: bytes | None, q_vs: ArrayLike | None, changes: Iterable[core.Event], samples: core.Samples
+) -> Detection:
     """Look for events in the samples of a chunk.
 
     Parameters
@@ -46,7 +48,7 @@ def detect(state: bytes | None, q_vs: Floats | None, changes: Iterable[core.Even
     state
         of the detector before
     q_vs
-        the mounting in force before, None: none was
+        (4,) the mounting in force before, None: none was
     changes
         what the estimator reports of this chunk
     samples
@@ -65,7 +67,7 @@ def detect(state: bytes | None, q_vs: Floats | None, changes: Iterable[core.Even
     return Detection(None if now is None else events.encode(now), tuple(found))
 
 
-def _parts(q_vs: Floats | None, changes: Iterable[core.Event], samples: core.Samples) -> Iterator[_Part]:
+def _parts(q_vs: ArrayLike | None, changes: Iterable[core.Event], samples: core.Samples) -> Iterator[_Part]:
     """Cut a chunk where a mounting comes into force, or is in doubt."""
     start, confirmed = 0, 0
     for change in changes:

@@ -6,7 +6,7 @@ finds the same state there, and computes anew if another upload came between.
 """
 
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -14,14 +14,30 @@ import core
 from api import metrics
 from api.formats import ParsedLog, raw
 from api.formats.log import Reading
+from api.services import detecting
 from api.services.context import Context
-from storage import installations, sessions
+from api.services.detecting import Detection
+from storage import installations, mounts, sessions
 from storage.database import ReadSession
 from storage.installations import Installation
+from storage.mounts import Mount
 from storage.sessions import Session
 
 Correction = dict[str, Any] | None
 """Calibration of a device's accelerometer, as it is stored."""
+
+
+class Beginning(NamedTuple):
+    """What the detector of events begins a chunk with."""
+
+    state: bytes | None
+    q_vs: list[float] | None
+    """mounting in force"""
+
+    @classmethod
+    def of(cls, row: Installation, mount: Mount | None) -> Self:
+        """Give that of an installation with its current mounting."""
+        return cls(row.motion, mount.quaternion if mount is not None and mount.in_force else None)
 
 
 class Foresight(NamedTuple):
@@ -38,6 +54,9 @@ class Foresight(NamedTuple):
     """of the state"""
     raw: bytes | None
     """the samples as they are kept, None: they are not"""
+    beginning: Beginning
+    """from which events were looked for"""
+    detection: Detection
 
     def holds(self, reading: Reading, before: bytes | None, correction: Correction) -> bool:
         """Tell whether this is what `advance` would give."""
@@ -50,6 +69,8 @@ class Stand(NamedTuple):
     row: Installation
     session: Session | None
     """None: it begins one"""
+    mount: Mount | None
+    """the one in force, or the suspect one"""
 
 
 def look_up(tx: ReadSession, device_id: str, session: str, seq: int) -> Stand | None:
@@ -58,22 +79,34 @@ def look_up(tx: ReadSession, device_id: str, session: str, seq: int) -> Stand | 
     if row is None:
         return None
     found = sessions.find(tx, row.device_pk, session)
-    return Stand(row, found) if seq == (0 if found is None else found.next_seq) else None
+    if seq != (0 if found is None else found.next_seq):
+        return None
+    return Stand(row, found, mounts.current(tx, row.device_pk))
 
 
 def foresee(context: Context, stand: Stand, parsed: ParsedLog) -> Foresight | None:
     """Advance a device's estimator by a chunk; None when that cannot be done."""
-    row, session = stand
+    row, session, mount = stand
     correction = row.accelerometer_calibration
     session_context = None if session is None else session.context
+    begins = session is None or row.session_pk != session.pk
+    if begins:
+        row = row._replace(motion=detecting.begin_session(row.motion))
     try:
-        state, before = _state(context.params, row, begins=session is None or row.session_pk != session.pk)
+        state, before = _state(context.params, row, begins)
         reading = parsed.samples(session_context)
         after, outcome = advance(context.params, correction, state, reading.samples)
     except (core.SnapshotError, core.SampleError):
         return None  # the transaction says what is wrong
-    kept = pack(context, reading)
-    return Foresight(session_context, reading, before, correction, after, outcome, core.encode(after), kept)
+    beginning = Beginning.of(row, mount)
+    detection = detect(beginning, correction, outcome, reading.samples)
+    known = (pack(context, reading), beginning, detection)
+    return Foresight(session_context, reading, before, correction, after, outcome, core.encode(after), *known)
+
+
+def detect(beginning: Beginning, correction: Correction, outcome: core.Outcome, samples: core.Samples) -> Detection:
+    """Look for events in the samples of a chunk."""
+    return detecting.detect(*beginning, outcome.events, corrected(correction, samples))
 
 
 def pack(context: Context, reading: Reading) -> bytes | None:

@@ -14,7 +14,7 @@ ADDED = (
     ("installations", "motion", sa.LargeBinary()),
     ("mounts", "ended_at", sa.BigInteger()),
 )
-MAY_GO = {"sqlite_where": sa.text("kept IS 0"), "postgresql_where": sa.text("kept IS false")}
+MAY_GO = {"sqlite_where": sa.text("kept = 0"), "postgresql_where": sa.text("kept = false")}
 IMPACT = {"sqlite_where": sa.text("kind = 'impact'"), "postgresql_where": sa.text("kind = 'impact'")}
 
 

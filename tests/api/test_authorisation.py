@@ -48,6 +48,10 @@ TABLE = {
     "GET /api/v1/devices/{device_id}/mounts": OWN,
     "GET /api/v1/devices/{device_id}/mounts/{n}": OWN,
     "GET /api/v1/devices/{device_id}/mount": OWN,
+    "GET /api/v1/devices/{device_id}/events": OWN,
+    "GET /api/v1/devices/{device_id}/events/{event_id}": OWN,
+    "GET /api/v1/devices/{device_id}/motion": OWN,
+    "GET /api/v1/devices/{device_id}/raw": OWN,
     "GET /api/v1/alerts": MANAGER,
     "GET /api/v1/alerts/{alert_id}": MANAGER,
     "POST /api/v1/alerts/{alert_id}/acknowledge": MANAGER,
@@ -89,7 +93,7 @@ class Service(NamedTuple):
     def call(self, key: str | None, endpoint: str, device_id: str) -> Response:
         method, template = endpoint.split(" ")
         path = template.replace("{device_id}", device_id)
-        for name in ("{n}", "{alert_id}", "{key_id}", "{webhook_id}"):
+        for name in ("{n}", "{alert_id}", "{event_id}", "{key_id}", "{webhook_id}"):
             path = path.replace(name, NO_NUMBER)
         return self.admin.as_(key).call(method, path, json=None if method == "GET" else BODY)
 

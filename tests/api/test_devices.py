@@ -29,6 +29,7 @@ def test_registering_shows_the_device_and_its_key_once(api: Api, clock: Clock) -
         "open_alerts": 0,
         "last_data_at": None,
         "revision": 0,
+        "vehicle_class": None,
     }
     assert api.get("/devices/Box:7_a.b-c") == made["device"]
     assert "key" not in api.get("/devices/Box:7_a.b-c")
@@ -240,13 +241,13 @@ def _raise(tx: WriteSession, pk: int, kinds: dict[str, str], clock: Clock) -> No
             alerts.resolve(tx, number, "x", None, clock.now)
 
 
-def test_the_summary_counts_mountings_in_doubt(api: Api, database: Database) -> None:
+def test_the_summary_counts_mountings_in_doubt(api: Api, database: Database, clock: Clock) -> None:
     for device_id in ("a", "b"):
         api.add_device(device_id).send_all(chunks())
     with database.write() as tx:
         pk = devices.exists(tx, "b")
         assert pk is not None
-        mounts.suspect(tx, pk)
+        mounts.suspect(tx, pk, clock.now)
     assert api.get("/fleet/summary")["suspect"] == 1
     assert [device["mount_status"] for device in api.get("/devices")["items"]] == ["in_force", "suspect"]
 

@@ -68,6 +68,7 @@ def test_they_come_group_by_group(api: Api) -> None:
         "settling",
         "verification",
         "change",
+        "events",
         "alerts",
         "upload",
         "retention",

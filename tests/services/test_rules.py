@@ -34,7 +34,7 @@ def event(kind: EventKind, fault: Fault | None = None) -> core.Event:
 def summed(samples: core.Samples) -> Seen:
     state = core.begin_session(core.DEFAULT, core.initial_state(core.DEFAULT))
     outcome = core.advance(core.DEFAULT, state, samples)[1]
-    return see((1, "a", NOW), samples, outcome, NOW)
+    return see((1, "a", NOW), samples, outcome, (), NOW)
 
 
 def test_a_chunk_summed_up() -> None:
@@ -157,7 +157,7 @@ def test_memory_of_another_version_is_understood() -> None:
 
 def test_every_kind_is_known_to_the_api_and_has_one_owner() -> None:
     kinds = [rule.kind for rule in rules.RULES]
-    assert sorted([*kinds, "orientation_changed"]) == sorted(get_args(schemas.AlertKind))
+    assert sorted([*kinds, "orientation_changed", "impact"]) == sorted(get_args(schemas.AlertKind))
     assert rules.forget(rules.opened({}, kinds), kinds) == {}
 
 
@@ -177,6 +177,6 @@ def test_the_rules_cost_little() -> None:
     best, watch = float("inf"), rules.opened({}, [rule.kind for rule in rules.RULES])
     for _ in range(200):
         begun = time.perf_counter()
-        rules.step(watch, see((1, "a", NOW), samples, outcome, NOW), LIMITS)
+        rules.step(watch, see((1, "a", NOW), samples, outcome, (), NOW), LIMITS)
         best = min(best, time.perf_counter() - begun)
     assert best < 0.3e-3, f"{1e3 * best:.3f} ms"
