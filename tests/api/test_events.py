@@ -2,6 +2,7 @@
 
 import math
 from datetime import datetime, timedelta
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -79,7 +80,7 @@ def test_harsh_driving_is_told_when_it_comes_often(api: Api, clock: Clock) -> No
     device = api.add_device()
     samples = manoeuvres(3, 900.0, 50.0).samples
     bounds = np.searchsorted(samples.t, np.arange(0.0, 901.0, CHUNK_SECONDS))
-    chunks = [samples.slice(start, stop) for start, stop in zip(bounds[:-1], bounds[1:], strict=True)]
+    chunks = [samples.slice(start, stop) for start, stop in pairwise(bounds.tolist())]
     play(device, clock, tuple(map(write_native_csv, chunks)))
     found = listed(device)
     assert len(found) >= 3

@@ -11,10 +11,21 @@ import pytest
 import core
 from api import schemas
 from api.services import rules
-from api.services.rules import Limits, Seen, Watch, device_loose, device_silent, sensor_fault, verification_failing
+from api.services.rules import (
+    Limits,
+    Seen,
+    Watch,
+    device_loose,
+    device_silent,
+    harsh_driving,
+    sensor_fault,
+    verification_failing,
+)
 from api.services.rules.seen import see
 from api.settings import Settings
 from core import EventKind, Fault, Stage
+from core.motion.events import EventKind as MotionKind
+from core.motion.events import MotionEvent
 from tests.watched import drive, parked
 
 NOW = datetime(2024, 5, 6, 7, 8, 9, tzinfo=UTC)
@@ -137,12 +148,67 @@ def test_calibration_stalled_counts_each_further_period() -> None:
     assert raised == [30, 60]
 
 
+def harsh(t: float, kind: str = "harsh_braking") -> MotionEvent:
+    return MotionEvent(MotionKind(kind), t, t - 1, 1.0, 4.0, 0.0, (-3.0, 0.0), 12.0)
+
+
+def drive_on(memory: Any, minutes: int, *events: MotionEvent) -> tuple[Any, list[str]]:
+    """Let the rule of harsh driving see minutes of driving, the events in the first of them."""
+    said = []
+    for n in range(minutes):
+        memory, verdict = harsh_driving.step(memory, seen(happened=events if n == 0 else ()), LIMITS)
+        said += [] if verdict is None else [type(verdict).__name__]
+    return memory, said
+
+
+def test_harsh_driving_needs_three_within_ten_minutes_of_driving() -> None:
+    memory, said = drive_on(harsh_driving.Memory(), 4, harsh(30.0))
+    memory, more = drive_on(memory, 6, harsh(30.0, "harsh_cornering"))
+    memory, last = drive_on(memory, 1, harsh(29.0))  # a second less than ten minutes after the first
+    assert (said, more, last) == ([], [], ["Finding"])
+    assert memory == harsh_driving.Memory(told=True)
+    memory, said = drive_on(harsh_driving.Memory(), 10, harsh(30.0), harsh(31.0))
+    assert drive_on(memory, 1, harsh(32.0))[1] == []
+
+
+def test_only_driving_counts_and_only_harsh_driving() -> None:
+    memory, _ = drive_on(harsh_driving.Memory(), 1, harsh(10.0), harsh(20.0))
+    for _ in range(100):  # parked, with an engine that runs
+        memory, verdict = harsh_driving.step(memory, seen(driving=0.0), LIMITS)
+        assert verdict is None
+    memory, said = drive_on(memory, 1, harsh(1.0, "pothole"), harsh(2.0, "impact"))
+    assert said == []
+    assert drive_on(memory, 1, harsh(30.0))[1] == ["Finding"]
+
+
+def test_harsh_driving_is_over_after_half_an_hour_of_quiet_data() -> None:
+    memory, said = drive_on(harsh_driving.Memory(), 29, harsh(1.0), harsh(2.0, "harsh_acceleration"), harsh(3.0))
+    assert said == ["Finding"]
+    memory, said = drive_on(memory, 30, harsh(1.0))
+    assert said == []
+    memory, said = drive_on(memory, 1)
+    assert (memory, said) == (harsh_driving.Memory(), ["Over"])
+
+
+def test_each_further_three_count_once_more() -> None:
+    _, verdict = harsh_driving.step(
+        harsh_driving.Memory(), seen(happened=tuple(harsh(float(n)) for n in range(1, 6))), LIMITS
+    )
+    assert isinstance(verdict, rules.Finding)
+    assert verdict.severity == "info"
+    assert "3 events within 10 minutes" in verdict.message
+    memory, said = drive_on(harsh_driving.Memory(), 1, *(harsh(float(n)) for n in range(1, 6)))
+    assert len(memory.recent) == 2
+    assert said + drive_on(memory, 1, harsh(1.0))[1] == ["Finding", "Finding"]
+
+
 def test_memory_is_strict_json_and_survives_it() -> None:
     direct: Watch = {}
     stored: Watch = {}
     for n in range(80):
         t, at = 60.0 * n, NOW + timedelta(seconds=41.0 * n)
-        chunk = seen(t_first=t, t_last=t + 59.9, received_at=at, with_fix=0.0, events=())
+        happened = (harsh(t + 9.0),) if n % 7 == 0 else ()
+        chunk = seen(t_first=t, t_last=t + 59.9, received_at=at, with_fix=0.0, events=(), happened=happened)
         direct, said = rules.step(direct, chunk, LIMITS)
         stored, said_too = rules.step(json.loads(json.dumps(stored, allow_nan=False)), chunk, LIMITS)
         assert said == said_too

@@ -15,7 +15,10 @@ from tests.conftest import Clock
 from tests.drives import remounted
 from tests.plans import explain, reads_whole_tables, statements
 
-WRITTEN = {"sessions", "chunks", "raw_chunks", "estimates", "mounts", "alerts", "events", "webhook_deliveries"}
+WRITTEN = {
+    *("sessions", "chunks", "raw_chunks", "estimates", "mounts"),
+    *("motion_events", "alerts", "events", "webhook_deliveries"),
+}
 FEW_ROWS = ("SCAN webhooks",)
 """tables of which a service has few rows, whatever its age"""
 GAIN = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from api.services.words import movement
+from api.services.words import movement, side
 from core import quaternion
 
 ALONG = {
@@ -60,3 +60,14 @@ def test_the_words_are_those_of_the_vehicle_frame(
     q = np.array([np.sqrt(0.5), *(np.sqrt(0.5) * np.array(axis))])
     np.testing.assert_allclose(quaternion.matrix(q) @ arrow, goes, atol=1e-12)
     assert word in movement(np.pi / 2, np.array(axis, dtype=float))
+
+
+@pytest.mark.parametrize(
+    ("degrees", "said"),
+    [
+        *((0, "front"), (22, "front"), (38, "front left"), (90, "left"), (135, "rear left"), (180, "rear")),
+        *((-180, "rear"), (-160, "rear"), (-130, "rear right"), (-90, "right"), (-23, "front right"), (-22, "front")),
+    ],
+)
+def test_where_a_push_came_from(degrees: float, said: str) -> None:
+    assert side(np.radians(degrees)) == said

@@ -1,6 +1,7 @@
 import subprocess
 import sys
 import threading
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -10,11 +11,11 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 
-from storage import chunks, devices
+from storage import chunks, devices, motion_events, mounts, raw_chunks
 from storage.database import Database
 from storage.migrate import config, upgrade
+from storage.models import EPOCH, metadata
 from storage.models import devices as device_table
-from storage.models import metadata
 from tests.postgres import Server
 
 ROOT = Path(__file__).parents[2]
@@ -22,6 +23,7 @@ ON_SQLITE, ON_POSTGRESQL = (
     {"ix_devices_id_search", "ix_devices_name_key_id_search"},
     {"ix_devices_id", "ix_devices_name_key_id"},
 )
+AT = datetime(2024, 5, 6, 7, 8, 9, tzinfo=UTC)
 CALIBRATION = sa.select(device_table.c.accelerometer_calibration)
 
 
@@ -130,6 +132,49 @@ def test_receipts_survive_the_fourth_migration_and_its_undoing(empty_url: str) -
         assert tx.all(int, sa.text("SELECT samples FROM chunks ORDER BY seq")) == [7, 7]
         tx.connection.execute(sa.text("DELETE FROM devices"))
         assert tx.value(sa.text("SELECT count(*) FROM chunks")) == 0
+    database.close()
+
+
+OLD_MOUNT = (
+    "INSERT INTO mounts (device_pk, n, session_pk, t, quaternion, sigma_deg, verification, status)"
+    " VALUES (1, 1, 1, 60.0, '[1, 0, 0, 0]', '[1, 1, 1]', '{}', 'in_force')"
+)
+
+
+def test_mountings_survive_the_sixth_migration_and_its_undoing(empty_url: str) -> None:
+    database = Database(empty_url)
+    with database.write() as tx:
+        command.upgrade(config(tx.connection), "0005")
+        tx.execute(sa.text("INSERT INTO devices (pk, id, name, created_at) VALUES (1, 'a', 'A', 0)"))
+        tx.execute(
+            sa.text(
+                "INSERT INTO sessions (pk, device_pk, name, next_seq, started_at, created_at)"
+                " VALUES (1, 1, 's', 1, 1000000, 0)"
+            )
+        )
+        tx.execute(sa.text(OLD_MOUNT))
+    upgrade(database)
+    with database.write() as tx:
+        mount = mounts.before(tx, 1, AT)
+        assert mount is not None
+        assert (mount.n, mount.status, mount.ended_at) == (1, "in_force", None)
+        assert mounts.before(tx, 1, EPOCH) is None
+        mounts.suspect(tx, 1, AT)
+        mounts.supersede(tx, 1, AT + timedelta(hours=1))
+        assert mounts.before(tx, 1, AT) == mount._replace(status="superseded", ended_at=AT)
+        chunk = raw_chunks.RawChunk(1, 0, 1, 0.0, 10.0, AT, "t ax", b"content")
+        raw_chunks.add(tx, chunk)
+        motion_events.add(tx, 1, (1, 0), "impact", 3.0, AT, {})
+        assert raw_chunks.content(tx, 1, 0) == b"content"
+        command.downgrade(config(tx.connection), "0005")
+        assert tx.value(sa.text("SELECT status FROM mounts")) == "superseded"
+    upgrade(database)
+    with database.write() as tx:
+        raw_chunks.add(tx, chunk)
+        motion_events.add(tx, 1, (1, 0), "impact", 3.0, AT, {})
+        devices.remove(tx, 1)
+        assert raw_chunks.content(tx, 1, 0) is None
+        assert tx.value(sa.text("SELECT count(*) FROM motion_events")) == 0
     database.close()
 
 

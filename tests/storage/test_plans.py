@@ -12,11 +12,14 @@ from storage import (
     chunks,
     coarse_estimates,
     device_lists,
+    devices,
     estimates,
     events,
     installations,
     leases,
+    motion_events,
     mounts,
+    raw_chunks,
     retention,
     sessions,
 )
@@ -40,6 +43,12 @@ LISTS: dict[str, Callable[[ReadSession], object]] = {
     "alerts of a severity": lambda tx: alerts.page(tx, 101, None, alerts.Filter(severity="critical")),
     "alerts of a device": lambda tx: alerts.page(tx, 101, None, alerts.Filter(device_id="a")),
     "alerts since": lambda tx: alerts.page(tx, 101, None, alerts.Filter(since=NOW)),
+    "events of a device": lambda tx: motion_events.page(tx, 1, 101, None, motion_events.Filter()),
+    "events from a place": lambda tx: motion_events.page(
+        tx, 1, 101, motion_events.Place(NOW, 7), motion_events.Filter()
+    ),
+    "events of a kind": lambda tx: motion_events.page(tx, 1, 101, None, motion_events.Filter(kind="impact")),
+    "events of a period": lambda tx: motion_events.page(tx, 1, 101, None, motion_events.Filter(*PERIOD)),
     "alerts until": lambda tx: alerts.page(tx, 101, None, alerts.Filter(until=NOW)),
 }
 ORDERS = {
@@ -89,6 +98,13 @@ LOOKS: dict[str, Callable[[WriteSession], object]] = {
     "newest sessions of a device": lambda tx: sessions.newest(tx, 1, 5, 100),
     "sessions that wait": lambda tx: chunks.sessions_waiting(tx, 1, 5),
     "devices that wait": lambda tx: chunks.devices_waiting_since(tx, NOW, NOW),
+    "an event": lambda tx: motion_events.find(tx, 1, 1),
+    "samples of a period": lambda tx: raw_chunks.stretches(tx, 1, *PERIOD),
+    "all samples": lambda tx: raw_chunks.stretches(tx, 1, None, None),
+    "newest samples": lambda tx: raw_chunks.newest(tx, 1),
+    "samples of a chunk": lambda tx: raw_chunks.content(tx, 1, 1),
+    "samples that go": lambda tx: raw_chunks.remove(tx, NOW, (10.0, 10.0), 100),
+    "the mounting of a time": lambda tx: mounts.before(tx, 1, NOW),
     "a lease": lambda tx: leases.take(tx, "x", Lease("me", NOW), NOW, NOW),
 }
 
@@ -121,6 +137,21 @@ def test_lists_come_in_the_order_of_an_index(tables: Database, name: str) -> Non
 def test_nothing_reads_whole_tables(tables: Database, name: str) -> None:
     steps = look(tables, LOOKS[name])
     assert not reads_whole_tables(steps), steps
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_samples_that_go_are_found_without_those_that_stay(tables: Database) -> None:
+    """However many are kept for ever; whether one is near an impact is looked up among the impacts."""
+    with tables.write() as tx:
+        raw_chunks.add(tx, _chunk(tx))
+    steps = look(tables, LOOKS["samples that go"])
+    assert any("raw_chunks USING INDEX ix_raw_chunks_may_go" in step for step in steps), steps
+    assert any("motion_events USING INDEX ix_motion_events_impacts" in step for step in steps), steps
+
+
+def _chunk(tx: WriteSession) -> raw_chunks.RawChunk:
+    device_pk = devices.add(tx, "a", {"name": "A"}, NOW)
+    return raw_chunks.RawChunk(1, 0, device_pk, 0.0, 1.0, NOW - timedelta(days=9), "t", b"")
 
 
 @pytest.mark.parametrize("backend", ["sqlite"], indirect=True)

@@ -109,13 +109,18 @@ def test_the_service_runs_on_it(old_url: str, clock: Clock, tmp_path: Path) -> N
         assert device.installation()["data"]["sample_rate_hz"] == 50.0
         assert device.get("health")["rates"]["sample_rate_hz"] == [None, None, 50.0]  # the last came in last
         assert len(device.get("estimates")["time"]) > 36
+        motion = device.get("motion")
+        assert (motion["mount"], motion["vehicle"], len(motion["columns"]["at"]) > 900) == (2, "sedan", True)
+        assert device.get("events")["items"] == []
         coarsen(settings, clock)
         assert 3 < len(device.get("estimates")["time"]) < 20
         api.call("DELETE", "/devices/old", 204)
     database = Database(old_url)
     with database.write() as tx:
         left = contents(tx)
-    assert not any(left[name] for name in ("sessions", "chunks", "estimates", "estimates_coarse", "mounts", "alerts"))
+    assert not any(
+        left[name] for name in ("sessions", "chunks", "raw_chunks", "estimates", "estimates_coarse", "mounts", "alerts")
+    )
     database.close()
 
 
