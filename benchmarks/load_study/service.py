@@ -29,6 +29,7 @@ WORKERS = 2
 SETTINGS: dict[str, str] = {
     "LIVELLA_REQUESTS_PER_MINUTE": "1000000",
     "LIVELLA_DEVICE_REQUESTS_PER_MINUTE": "1000000",
+    "LIVELLA_RAW_RETENTION_DAYS": "0",  # the cells tell of the path without samples being kept
 }
 """Settings of the service under load that are not the defaults, by name in the environment: no limit on calls may
 decide the result."""
