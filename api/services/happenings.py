@@ -36,8 +36,7 @@ def record(
     data = _stored(event, mount)
     number = motion_events.add(tx, device_pk, (session.pk, seq), str(event.kind), event.t, at, data)
     if event.kind is EventKind.IMPACT:
-        shown = _shown(number, at, event.t, data)
-        alerting.raise_(tx, context, device_pk, _impact(shown, session.name, event), now)
+        alerting.raise_(tx, context, device_pk, impact(number, session.name, at, event, mount), now)
 
 
 def _stored(event: MotionEvent, mount: int) -> dict[str, Any]:
@@ -79,19 +78,20 @@ def _shown(number: int, at: datetime, t: float, data: dict[str, Any]) -> dict[st
     }
 
 
-def _impact(shown: dict[str, Any], session: str, event: MotionEvent) -> Finding:
-    """Give the alert of an impact; its data tell beside the usual what is known of the event."""
+def impact(number: int, session: str, at: datetime, event: MotionEvent, mount: int) -> Finding:
+    """Give the alert of an impact, event number `number`; its data tell beside the usual what is known of it."""
+    shown = _shown(number, at, event.t, _stored(event, mount))
     told = ("direction_deg", "peak_mps2", "duration_s", "speed_change_mps", "speed_mps")
     known = {
         "session": session,
         "t": event.t,
-        "at": findings.text(shown["at"]),
+        "at": findings.text(at),
         "since_t": event.start,
         "since": findings.text(shown["start_at"]),
-        "mount": shown["mount"],
-        "event": shown["id"],
+        "mount": mount,
+        "event": number,
     }
-    message = impact_message(event, shown["at"])
+    message = impact_message(event, at)
     return Finding(IMPACT, "critical", message, findings.data(known | {name: shown[name] for name in told}))
 
 

@@ -4,6 +4,7 @@ Driving until each of them is raised would take hours; what is raised, in which 
 service's own.
 """
 
+import math
 from datetime import UTC, datetime, timedelta
 from typing import Any, NamedTuple
 
@@ -11,10 +12,12 @@ import numpy as np
 import sqlalchemy as sa
 
 import core
-from api.services import findings, publishing
-from api.services.rules import Limits, Seen, calibration_stalled, clock_fault, device_silent, gps_lost
+from api.services import findings, happenings, publishing
+from api.services.rules import Limits, Seen, calibration_stalled, clock_fault, device_silent, gps_lost, harsh_driving
 from api.services.rules import verification_failing as failing
 from core import EventKind, Evidence, Fault, Stage
+from core.motion.events import EventKind as MotionKind
+from core.motion.events import MotionEvent
 from core.quaternion import Floats
 from storage import alerts
 from storage import models as tables
@@ -55,6 +58,8 @@ def every_kind(now: datetime) -> dict[Raised, Finding]:
         ("van-2", "The clock stands still", "L’orologio è fermo", _standing(now)),
         ("van-3", "The clock is 75 s ahead", "L’orologio è avanti di 75 s", _ahead(now)),
         ("van-4", "The clock is fast by 10 %", "L’orologio corre troppo, del 10 %", _fast(now)),
+        ("van-5", "The vehicle was hit from the front left", "Il veicolo è stato urtato davanti a sinistra", _hit(now)),
+        ("van-5", "3 harsh manoeuvres within 10 minutes", "3 manovre brusche in 10 minuti di guida", _harsh(now)),
     ]
     return {Raised(*shown): _checked(finding) for *shown, finding in found}
 
@@ -127,6 +132,18 @@ def _fast(now: datetime) -> object:
     begun = now.timestamp() - 600.5
     memory = clock_fault.Memory(session=1, window_r=begun, least=begun, rates=(1.1, 1.1))
     return clock_fault.step(memory, _seen(now, t_last=660.0), LIMITS)[1]
+
+
+def _hit(now: datetime) -> object:
+    event = MotionEvent(MotionKind.IMPACT, 9.0, 8.95, 0.09, 117.7, math.radians(38), (-5.55, -4.17), 12.0)
+    return happenings.impact(1, "a", now, event, 1)
+
+
+def _harsh(now: datetime) -> object:
+    events = [
+        MotionEvent(MotionKind.HARSH_BRAKING, t, t - 1, 1.0, 4.0, 0.0, (-3.0, 0.0), 12.0) for t in (9.0, 19.0, 29.0)
+    ]
+    return harsh_driving.step(harsh_driving.Memory(), _seen(now, happened=tuple(events)), LIMITS)[1]
 
 
 def _checked(finding: object) -> Finding:

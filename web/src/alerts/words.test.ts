@@ -79,6 +79,27 @@ const FOUND: [Alert, string, string][] = [
     "L’orologio è avanti di 1235 s rispetto all’ora",
   ],
   [
+    alert("impact", { direction_deg: 38, speed_change_mps: [-5.55, -4.17] }),
+    "The vehicle was hit from the front left, its speed changed by 25 km/h",
+    "Il veicolo è stato urtato davanti a sinistra, la sua velocità è cambiata di 25 km/h",
+  ],
+  [
+    alert("impact", { direction_deg: -172.4, speed_change_mps: [2, 0.1] }),
+    "The vehicle was hit from the rear, its speed changed by 7 km/h",
+    "Il veicolo è stato urtato da dietro, la sua velocità è cambiata di 7 km/h",
+  ],
+  [
+    alert("impact", { direction_deg: -22, speed_change_mps: [-3, 1] }),
+    "The vehicle was hit from the front, its speed changed by 11 km/h",
+    "Il veicolo è stato urtato davanti, la sua velocità è cambiata di 11 km/h",
+  ],
+  [alert("impact", {}), "The vehicle was hit", "Il veicolo è stato urtato"],
+  [
+    alert("harsh_driving", { seen: 3 }),
+    "3 harsh manoeuvres within 10 minutes of driving",
+    "3 manovre brusche in 10 minuti di guida",
+  ],
+  [
     alert("clock_fault", { seen: 3, unit: "s" }),
     "The device’s clock is wrong",
     "L’orologio del dispositivo è sbagliato",

@@ -68,6 +68,12 @@ const RULES: readonly [string, AlertData, [string, string, string], [string, str
     ["Nessun dato da", "72,6 h", "72 h"],
   ],
   [
+    "harsh_driving",
+    measured(3, 3, "events"),
+    ["Harsh manoeuvres", "3 events", "3 events"],
+    ["Manovre brusche", "3 eventi", "3 eventi"],
+  ],
+  [
     "clock_fault",
     measured(1.25, 1, "s"),
     ["Clock is off by", "1.25 s", "1 s"],
