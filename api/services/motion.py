@@ -31,6 +31,8 @@ USUAL = timedelta(minutes=10)
 """of the newest samples, where no period is named"""
 BEFORE = timedelta(minutes=2)
 """of samples before a period, from which its attitude, velocity and the gyroscope's bias are learnt"""
+EARLIEST = EPOCH + timedelta(days=1)
+"""no device has sent anything before, and a calendar has a beginning"""
 USUAL_CLASS = "sedan"
 EQUATOR, SQUARED_ECCENTRICITY = 6378137.0, 6.69437999e-3
 """m and none, of the ellipsoid of WGS 84"""
@@ -90,7 +92,7 @@ def _look_up(tx: ReadSession, device_id: str, start: datetime | None, end: datet
     device = devices.find(tx, device_id)
     if device is None:
         raise NotFoundError(UNKNOWN_DEVICE)
-    until = end or raw_chunks.newest(tx, device.pk) or now
+    until = max(end or raw_chunks.newest(tx, device.pk) or now, EARLIEST)
     since = start or until - USUAL
     if until - since > LONGEST:
         raise LongSpanError(f"At most {LONGEST // timedelta(hours=1)} hours of motion are computed at once.")

@@ -125,8 +125,7 @@ def test_sessions_are_told_in_one_frame(api: Api, clock: Clock) -> None:
         (float(np.nanmax(x[names == name])), float(np.nanmin(x[names == name]))) for x in (east, north) for name in "ab"
     ]
     # the same streets: the frames of both sessions agree
-    np.testing.assert_allclose(both[0], both[1], atol=60.0)
-    assert max(np.abs(np.subtract(both[2], both[3]))) < 60.0
+    assert np.abs(np.subtract(both[::2], both[1::2])).max() < 60.0
 
 
 def test_a_part_is_told_as_within_the_whole(api: Api, clock: Clock) -> None:
@@ -142,7 +141,8 @@ def test_a_part_is_told_as_within_the_whole(api: Api, clock: Clock) -> None:
         if at in rows
     ]
     assert len(both) > 2000
-    np.testing.assert_allclose(*np.transpose(both), atol=0.3)
+    off = np.abs(np.subtract(*np.transpose(both)))
+    assert (float(np.median(off)) < 0.15, float(off.max()) < 0.6) == (True, True)
 
 
 def test_the_accelerometers_errors_are_taken_out_on_demand(api: Api, clock: Clock) -> None:
@@ -175,6 +175,17 @@ def test_more_than_six_hours_are_refused(api: Api, clock: Clock) -> None:
     assert problem["type"].endswith("span-too-long")
     assert "6 hours" in problem["detail"]
     ask(device, 200, clock.now - timedelta(hours=6), clock.now)
+    ask(device, 422, clock.now - timedelta(days=1))
+
+
+@pytest.mark.parametrize("moment", ["0001-01-01T00:00:00Z", "9999-12-31T23:59:59Z", "0001-01-01T00:00:00+14:00"])
+def test_any_moment_may_be_asked_for(api: Api, clock: Clock, moment: str) -> None:
+    device = api.add_device()
+    play(device, clock, chunks()[:1])
+    for name in ("from", "to"):
+        for what in ("motion", "raw", "events"):
+            answer = device.api.call("GET", f"/devices/{device.id}/{what}", params={name: moment})
+            assert answer.status_code in {200, 404, 422}, (name, what)
 
 
 @pytest.mark.parametrize("backend", ["sqlite"], indirect=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -107,7 +108,8 @@ def test_a_period_is_cut_from_it(api: Api, clock: Clock) -> None:
     play(device, clock, chunks()[:4])
     started = clock.now.timestamp() - 120.0 + 0.02
     moments = [f"{np.datetime64(int(1e6 * (started + t)), 'us')}Z" for t in (25.0, 65.0)]
-    after = read(ask(device, **{"from": moments[0], "to": moments[1]}))
+    query: dict[str, Any] = {"from": moments[0], "to": moments[1]}
+    after = read(ask(device, **query))
     assert after.t[0] == pytest.approx(25.0, abs=0.05)
     assert after.t[-1] == pytest.approx(65.0, abs=0.05)
     ask(device, 404, to="2020-01-01T00:00:00Z")
@@ -130,7 +132,7 @@ def test_a_chunk_is_kept_once_when_it_takes_effect(api: Api, clock: Clock, datab
     device.send(bodies[0], 0, expect=200)
     device.send(bodies[0], 0, expect=200)
     device.send(bodies[1], 0, expect=409)
-    assert device.send(bodies[2], 2, expect=202)
+    device.send(bodies[2], 2, expect=202)
     assert [seq for _, seq in kept(database)] == [0]
     device.send(bodies[1], 1, expect=200)
     assert [seq for _, seq in kept(database)] == [0, 1, 2]
