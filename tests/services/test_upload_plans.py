@@ -12,7 +12,7 @@ from api.settings import Settings
 from storage import devices, webhooks
 from storage.chunks import Body
 from tests.conftest import Clock
-from tests.drives import remounted
+from tests.drives import crashed, remounted
 from tests.plans import explain, reads_whole_tables, statements
 
 WRITTEN = {
@@ -58,12 +58,14 @@ def send_everything(context: Context, clock: Clock, key: str) -> None:
 @pytest.fixture
 def plans(context: Context, clock: Clock) -> dict[str, list[str]]:
     """Give the steps of every statement of uploads."""
-    key = fleet.register(context, schemas.DeviceDraft(id="a", name="A")).key
+    key, other = (fleet.register(context, schemas.DeviceDraft(id=name, name=name)).key for name in "ab")
     with context.database.write() as tx:
         devices.edit(tx, fleet.number(tx, "a"), {"accelerometer_calibration": {"gain": GAIN, "offset": [0.0] * 3}})
         webhooks.add(tx, {"name": "w", "url": "https://example.com/", "active": True}, "secret", "x", clock())
     with statements(sa.Engine) as ran:
         send_everything(context, clock, key)
+        for seq, body in enumerate(crashed().chunks):
+            assert send(context, other, body, seq) == "applied"
     with context.database.write() as tx:
         if tx.is_postgresql:
             tx.connection.exec_driver_sql("SET LOCAL enable_seqscan = off")  # the tables are small
