@@ -6,21 +6,16 @@ How long a calibration takes is the estimator's matter: the drives are cut where
 from functools import cache
 from typing import NamedTuple
 
-import numpy as np
-
 import core
 from api.formats.writer import write_native_csv
 from core import EventKind, Samples, quaternion
-from core.simulation import Drive, Scenario, simulate
-from core.simulation_events import Crash, crash
+from core.simulation import Scenario, simulate
 
 CHUNK_SECONDS = 30
 RATE = 50.0
 """Hz; less than a real device, for speed"""
 PLAIN_SECONDS = 420.0
 REMOUNTED_SECONDS = 1200.0
-CRASH_AT = 195.0
-"""s"""
 REMOUNTED_AT = 450.0
 
 
@@ -69,30 +64,6 @@ def _cut(samples: Samples, count: int, confirmed: int, moved: int, anew: int) ->
     samples = samples.slice(0, min(count * step, len(samples)))
     pieces = (samples.slice(start, start + step) for start in range(0, len(samples), step))
     return Story(samples, tuple(write_native_csv(piece) for piece in pieces), confirmed, moved, anew)
-
-
-class Crashed(NamedTuple):
-    """A drive in chunks that ends in a crash, and its truth."""
-
-    drive: Drive
-    hit: Crash
-    chunks: tuple[bytes, ...]
-    confirmed: int
-    """chunk in which the mounting is confirmed"""
-    struck: int
-    """chunk with the crash, the last but one"""
-
-
-@cache
-def crashed(seed: int = 2) -> Crashed:
-    """Town driving until the mounting is confirmed; a minute later the vehicle is hit from the front left."""
-    drive = simulate(Scenario("city", CRASH_AT + 70.0, seed, sensor="calibrated", imu_rate=2 * RATE))
-    hit = Crash(CRASH_AT, np.radians(38.0), 117.0, 0.09, ringing=0.1)
-    samples = crash(drive, hit, np.random.default_rng(1))
-    step, struck = int(CHUNK_SECONDS * 2 * RATE), int(CRASH_AT // CHUNK_SECONDS)
-    pieces = (samples.slice(n * step, (n + 1) * step) for n in range(struck + 2))
-    confirmed = _chunks_of(samples, EventKind.CONFIRMED)[0]
-    return Crashed(drive, hit, tuple(write_native_csv(piece) for piece in pieces), confirmed, struck)
 
 
 def chunks(seed: int = 2) -> tuple[bytes, ...]:

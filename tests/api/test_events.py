@@ -17,7 +17,8 @@ from core.simulation_events import manoeuvres
 from storage import models as tables
 from storage.database import Database
 from tests.conftest import Clock
-from tests.drives import CHUNK_SECONDS, crashed, remounted
+from tests.crashes import crashed
+from tests.drives import CHUNK_SECONDS, remounted
 from tests.service import Api, Device, Json
 from tests.watched import the_alert
 

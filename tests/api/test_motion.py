@@ -8,7 +8,8 @@ import pytest
 from api.overload import MOST_COMPUTATIONS, Gate
 from core import quaternion
 from tests.conftest import Clock
-from tests.drives import CHUNK_SECONDS, chunks, crashed, plain, remounted
+from tests.crashes import crashed
+from tests.drives import CHUNK_SECONDS, chunks, plain, remounted
 from tests.service import Api, Device, Json
 
 

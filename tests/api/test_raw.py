@@ -17,7 +17,8 @@ from core import Samples
 from storage.database import Database
 from storage.models import raw_chunks
 from tests.conftest import Clock
-from tests.drives import chunks, crashed
+from tests.crashes import crashed
+from tests.drives import chunks
 from tests.formats.test_raw import assert_same, sent, with_everything
 from tests.service import Api, Device, Response
 from tests.watched import parked, pieces

@@ -12,7 +12,8 @@ from api.settings import Settings
 from storage import devices, webhooks
 from storage.chunks import Body
 from tests.conftest import Clock
-from tests.drives import crashed, remounted
+from tests.crashes import crashed
+from tests.drives import remounted
 from tests.plans import explain, reads_whole_tables, statements
 
 WRITTEN = {
