@@ -42,6 +42,9 @@ export const keys = {
   estimates: (id: string) => ["device", id, "estimates"],
   /** history that no event of the live stream changes */
   past: (id: string) => ["device", id, "past"],
+  /** computed from raw data: nothing that has been computed changes, what comes in is beyond it */
+  motion: (id: string) => ["device", id, "motion"],
+  motionEvents: (id: string) => ["device", id, "events"],
   mounts: (id: string) => ["device", id, "mounts"],
   alerts: (id: string) => ["device", id, "alerts"],
   alertLists: ["alerts"],

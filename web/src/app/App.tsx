@@ -10,7 +10,7 @@ import { t, useLanguage } from "../text";
 import { ErrorBoundary } from "./ErrorBoundary";
 import { LiveProvider } from "./Live";
 import { NotFound } from "./NotFound";
-import { AlertsPage, DevicePage, DevicesPage, SettingsPage } from "./pages";
+import { AlertsPage, DevicePage, DevicesPage, EventPage, MotionPage, SettingsPage } from "./pages";
 import { Shell } from "./Shell";
 import { SignIn } from "./SignIn";
 import { useScroll } from "./scroll";
@@ -65,6 +65,10 @@ function Pages({ session }: { session: SignedIn }) {
       </Route>
       <Route path="/devices">{allowed("installer", DevicesPage)}</Route>
       <Route path="/devices/:id">{({ id }) => <DevicePage key={id} id={id} />}</Route>
+      <Route path="/devices/:id/motion">{({ id }) => <MotionPage key={id} id={id} />}</Route>
+      <Route path="/devices/:id/motion/:event">
+        {({ id, event }) => <EventPage key={event} id={id} event={Number(event)} />}
+      </Route>
       <Route path="/alerts">{allowed("manager", AlertsPage)}</Route>
       <Route path="/settings/*?">{allowed("installer", SettingsPage)}</Route>
       <Route>

@@ -5,6 +5,8 @@ import { openRooms, type Room } from "../text";
 const parts = {
   devices: () => import("../devices/DevicesPage").then((m) => m.DevicesPage),
   device: () => import("../device/DevicePage").then((m) => m.DevicePage),
+  motion: () => import("../motion/MotionPage").then((m) => m.MotionPage),
+  event: () => import("../motion/EventPage").then((m) => m.EventPage),
   alerts: () => import("../alerts/AlertsPage").then((m) => m.AlertsPage),
   settings: () => import("../settings/SettingsPage").then((m) => m.SettingsPage),
 };
@@ -13,6 +15,8 @@ type Part = keyof typeof parts;
 const rooms: Record<Part, Room[]> = {
   devices: ["devices"],
   device: ["device", "history", "mounting", "alerts"],
+  motion: ["motion", "device", "history"],
+  event: ["motion", "device", "history"],
   alerts: ["alerts", "history", "mounting"],
   settings: ["settings", "alerts"],
 };
@@ -26,13 +30,16 @@ function page<P>(part: Part, load: () => Promise<ComponentType<P>>) {
 
 export const DevicesPage = page("devices", parts.devices);
 export const DevicePage = page("device", parts.device);
+export const MotionPage = page("motion", parts.motion);
+export const EventPage = page("event", parts.event);
 export const AlertsPage = page("alerts", parts.alerts);
 export const SettingsPage = page("settings", parts.settings);
 
 /** Somebody comes to this address: what it shows begins to come while it is still found out who they are. */
 export function comesTo(path: string): void {
-  const [, place, more] = path.split("/");
-  const part = place === "devices" && more ? "device" : place;
+  const [, place, more, room, event] = path.split("/");
+  const ofDevice = room === "motion" ? (event ? "event" : "motion") : "device";
+  const part = place === "devices" && more ? ofDevice : place;
   if (part === undefined || !Object.hasOwn(parts, part)) return;
   const wanted = part as Part;
   // a failure is told where the page is shown

@@ -2,4 +2,4 @@
 import { openRooms, startText } from ".";
 
 await startText("en");
-await openRooms("alerts", "device", "devices", "history", "mounting", "settings");
+await openRooms("alerts", "device", "devices", "history", "motion", "mounting", "settings");

@@ -1,10 +1,10 @@
 import { Anchor } from "@mantine/core";
-import { ArrowLeft, Printer } from "lucide-react";
+import { ArrowLeft, Printer, Route } from "lucide-react";
 import { Link } from "wouter";
 import { useMay } from "../../api/session";
 import type { Device } from "../../api/types";
 import { t } from "../../text";
-import { HeadAction } from "./HeadAction";
+import { HeadAction, HeadLink } from "./HeadAction";
 import css from "./head.module.css";
 import { MoreMenu } from "./MoreMenu";
 import { RefitButton } from "./RefitButton";
@@ -33,6 +33,11 @@ export function PageHead({ name, id, device }: PageHeadProps) {
         </p>
       </div>
       <div className={css.actions}>
+        <HeadLink
+          icon={Route}
+          label={t("device.action.motion")}
+          to={`/devices/${encodeURIComponent(id)}/motion`}
+        />
         <HeadAction icon={Printer} label={t("device.action.print")} onClick={() => window.print()} />
         {installer && <RefitButton id={id} />}
         {installer && device && <MoreMenu device={device} />}

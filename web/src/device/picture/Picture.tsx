@@ -24,7 +24,7 @@ export function Picture({ quaternion, text }: { quaternion: Quaternion; text: st
   }
   return (
     <Suspense fallback={<div className={css.stage} aria-hidden />}>
-      <Scene3D quaternion={quaternion} text={text} onUnable={() => setFlat(true)} />
+      <Scene3D shows="device" quaternion={quaternion} text={text} onUnable={() => setFlat(true)} />
     </Suspense>
   );
 }

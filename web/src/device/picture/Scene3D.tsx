@@ -3,7 +3,7 @@ import { useReducedMotion } from "@mantine/hooks";
 import { type KeyboardEvent, useEffect, useRef, useState } from "react";
 import type { Quaternion } from "../../lib/rotation";
 import { t } from "../../text";
-import type { Palette } from "./car";
+import { mountedDevice, type Palette, tiltedCar } from "./car";
 import css from "./picture.module.css";
 import { CarScene, type ViewName } from "./scene";
 
@@ -16,14 +16,18 @@ const KEYS: Record<string, readonly [number, number]> = {
   ArrowDown: [0, -15],
 };
 
+const SHOWN = { device: mountedDevice, tilt: tiltedCar };
+
 export interface SceneProps {
   quaternion: Quaternion;
   text: string;
+  /** the device in its car, or the car on level ground; the device turns slowly */
+  shows: keyof typeof SHOWN;
   /** no WebGL here */
   onUnable: () => void;
 }
 
-export default function Scene3D({ quaternion, text, onUnable }: SceneProps) {
+export default function Scene3D({ quaternion, text, shows, onUnable }: SceneProps) {
   const host = useRef<HTMLDivElement>(null);
   const scene = useRef<CarScene>(null);
   const [view, setView] = useState<ViewName | "">("corner");
@@ -36,7 +40,9 @@ export default function Scene3D({ quaternion, text, onUnable }: SceneProps) {
   useEffect(() => {
     if (!host.current) return;
     try {
-      scene.current = new CarScene(host.current, palette(host.current), still, () => setView(""));
+      scene.current = new CarScene(host.current, palette(host.current), SHOWN[shows], still, () =>
+        setView(""),
+      );
     } catch {
       latest.current.onUnable();
       return;
@@ -44,9 +50,9 @@ export default function Scene3D({ quaternion, text, onUnable }: SceneProps) {
     scene.current.turn(latest.current.quaternion, false);
     scene.current.look(latest.current.view || "corner");
     return () => scene.current?.dispose();
-  }, [scheme, still]);
+  }, [scheme, still, shows]);
 
-  useEffect(() => scene.current?.turn(quaternion, true), [quaternion]);
+  useEffect(() => scene.current?.turn(quaternion, shows === "device"), [quaternion, shows]);
 
   const choose = (chosen: ViewName) => {
     setView(chosen);
@@ -66,7 +72,7 @@ export default function Scene3D({ quaternion, text, onUnable }: SceneProps) {
         role="group"
         // biome-ignore lint/a11y/noNoninteractiveTabindex: the arrow keys turn what is in it
         tabIndex={0}
-        aria-label={t("device.picture.about")}
+        aria-label={t(shows === "device" ? "device.picture.about" : "motion.attitude.about")}
         onKeyDown={press}
       >
         <div ref={host} role="img" aria-label={text} />

@@ -52,6 +52,22 @@ const DEVICE_SIZE = [0.74, 0.5, 0.24] as const;
 const AXIS_LENGTH = 1.2;
 const HEAD = [0.26, 0.15] as const;
 
+/** What a picture shows: some of it stands still, the rest is turned. */
+export interface Content {
+  still: Object3D[];
+  turned: Object3D;
+}
+
+/** The device, turned in its car by q_vs. */
+export function mountedDevice(palette: Palette): Content {
+  return { still: [makeCar(palette), makeDirections(palette)], turned: makeDevice(palette) };
+}
+
+/** The car, tilted on level ground. */
+export function tiltedCar(palette: Palette): Content {
+  return { still: [makeDirections(palette)], turned: makeCar(palette) };
+}
+
 /** See-through, so that the device in it is seen from everywhere. */
 export function makeCar(palette: Palette): Group {
   const car = new Group();

@@ -12,8 +12,8 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { DEGREES, type Quaternion as Mounting } from "../../lib/rotation";
-import { makeCar, makeDevice, makeDirections, type Palette, sizeLabels } from "./car";
+import { DEGREES, type Quaternion as Rotation } from "../../lib/rotation";
+import { type Content, type Palette, sizeLabels } from "./car";
 
 export type ViewName = "corner" | "above" | "left" | "behind";
 
@@ -38,7 +38,7 @@ export class CarScene {
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(38, 1, 0.1, 60);
   private readonly controls: OrbitControls;
-  private readonly device;
+  private readonly turned;
   private readonly watcher: ResizeObserver;
   private frame = 0;
 
@@ -46,14 +46,16 @@ export class CarScene {
   constructor(
     private readonly host: HTMLElement,
     palette: Palette,
+    makeContent: (palette: Palette) => Content,
     private readonly still: boolean,
     /** somebody turned the picture: it shows none of the views any more */
     private readonly onOrbit: () => void,
   ) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.device = makeDevice(palette);
-    this.fill(palette);
+    const content = makeContent(palette);
+    this.turned = content.turned;
+    this.fill(palette, content);
     this.camera.up.set(0, 0, 1);
     this.controls = this.makeControls();
     host.append(this.renderer.domElement);
@@ -62,14 +64,14 @@ export class CarScene {
     this.look("corner");
   }
 
-  private fill(palette: Palette): void {
+  private fill(palette: Palette, { still, turned }: Content): void {
     const sun = new DirectionalLight("#ffffff", 1.6);
     sun.position.set(-3, 4, 8);
     const grid = new GridHelper(12, 12, palette.line, palette.line).rotateX(Math.PI / 2);
     grid.material.transparent = true;
     grid.material.opacity = 0.6;
     const light = new HemisphereLight("#ffffff", "#8899aa", 1.6);
-    this.scene.add(light, sun, grid, makeCar(palette), makeDirections(palette), this.device);
+    this.scene.add(light, sun, grid, ...still, turned);
   }
 
   private makeControls(): OrbitControls {
@@ -85,20 +87,20 @@ export class CarScene {
     return controls;
   }
 
-  /** Turn the device to a mounting q_vs, at once or in half a second. */
-  turn([w, x, y, z]: Mounting, animated: boolean): void {
+  /** Turn what is turned in the picture, at once or in half a second. */
+  turn([w, x, y, z]: Rotation, animated: boolean): void {
     cancelAnimationFrame(this.frame);
-    const from = this.device.quaternion.clone();
+    const from = this.turned.quaternion.clone();
     const to = new Quaternion(x, y, z, w);
     if (!animated || this.still) {
-      this.device.quaternion.copy(to);
+      this.turned.quaternion.copy(to);
       this.render();
       return;
     }
     const start = performance.now();
     const step = (now: number) => {
       const share = Math.min((now - start) / TURN, 1);
-      this.device.quaternion.slerpQuaternions(from, to, share * (2 - share));
+      this.turned.quaternion.slerpQuaternions(from, to, share * (2 - share));
       this.render();
       if (share < 1) this.frame = requestAnimationFrame(step);
     };

@@ -4,6 +4,7 @@ export const device = {
   gone: "The device {{id}} does not exist",
 
   action: {
+    motion: "Motion",
     print: "Print the certificate",
     refit: "Device refitted",
     more: "More",

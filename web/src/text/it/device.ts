@@ -5,6 +5,7 @@ export const device: Translated<typeof en.device> = {
   gone: "Il dispositivo {{id}} non esiste",
 
   action: {
+    motion: "Moto",
     print: "Stampa il certificato",
     refit: "Dispositivo rimontato",
     more: "Altro",

@@ -5,6 +5,7 @@ import { common } from "./common";
 import { device } from "./device";
 import { devices } from "./devices";
 import { history } from "./history";
+import { motion } from "./motion";
 import { mounting } from "./mounting";
 import { settings } from "./settings";
 import { shell } from "./shell";
@@ -15,6 +16,7 @@ export const it: Translated<typeof en> = {
   device,
   devices,
   history,
+  motion,
   mounting,
   settings,
   shell,
