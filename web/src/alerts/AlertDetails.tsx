@@ -30,6 +30,7 @@ export function AlertDetails({ alert, showDevice, unfolded }: AlertDetailsProps)
           <Suspense fallback={null}>
             <Evidence kind={alert.kind} data={alert.data} unfolded />
           </Suspense>
+          <ToEvents alert={alert} />
           {showDevice && <Links alert={alert} />}
         </>
       )}
@@ -86,6 +87,20 @@ function History({ alert }: { alert: Alert }) {
 
 function Note({ text, lang }: { text: string | null; lang?: string | undefined }) {
   return text ? <blockquote lang={lang}>{text}</blockquote> : null;
+}
+
+/** What happened to the vehicle is told on a page of its own. */
+function ToEvents({ alert: { kind, data, device_id } }: { alert: Alert }) {
+  if (kind !== "impact" && kind !== "harsh_driving") return null;
+  const motion = `/devices/${encodeURIComponent(device_id)}/motion`;
+  const event = typeof data.event === "number" ? data.event : null;
+  return (
+    <p className={css.links}>
+      <Anchor component={Link} href={event === null ? motion : `${motion}/${event}`}>
+        {t(event === null ? "alerts.card.events" : "alerts.card.event")}
+      </Anchor>
+    </p>
+  );
 }
 
 function Links({ alert: { id, device_id } }: { alert: Alert }) {

@@ -35,6 +35,11 @@ export function onTheClock(time: Date): string {
   return format({ dateStyle: "medium", timeStyle: "short" }).format(time);
 }
 
+/** "22 Nov 2025, 10:20:05" on the reader's clock. */
+export function exactly(time: Date): string {
+  return format({ dateStyle: "medium", timeStyle: "medium" }).format(time);
+}
+
 /** "10:20:05" on the reader's clock. */
 export function toTheSecond(time: Date): string {
   return format({ timeStyle: "medium" }).format(time);

@@ -8,7 +8,7 @@ import { NotFound } from "../app/NotFound";
 import { useTitle } from "../app/title";
 import { Section } from "../components/Section";
 import { Empty, Failed, Loading } from "../components/States";
-import { onTheClock, toTheSecond } from "../lib/time";
+import { exactly } from "../lib/time";
 import { t } from "../text";
 import { driveOf } from "./drive";
 import { Facts } from "./Facts";
@@ -37,7 +37,6 @@ export function EventPage({ id, event }: { id: string; event: number }) {
 }
 
 function Content({ id, event }: { id: string; event: MotionEvent }) {
-  const at = new Date(event.at);
   const device = `/devices/${encodeURIComponent(id)}`;
   return (
     <div className={css.page}>
@@ -45,7 +44,7 @@ function Content({ id, event }: { id: string; event: MotionEvent }) {
         back={`${device}/motion`}
         backTo={t("motion.title")}
         title={t(`motion.kind.${event.kind}`)}
-        facts={`${id} · ${onTheClock(at)} · ${toTheSecond(at)}`}
+        facts={`${id} · ${exactly(new Date(event.at))}`}
       />
       <Section title={t("motion.event.what")}>
         <p className={css.lead}>{summary(event)}</p>
@@ -79,7 +78,9 @@ function Around({ id, event }: { id: string; event: MotionEvent }) {
           {t("motion.no_raw")}
         </Empty>
       )}
-      {drive && drive.time.length > 0 && <Pictures drive={drive} happenings={happenings} />}
+      {drive && drive.time.length > 0 && (
+        <Pictures drive={drive} happenings={happenings} begin={middle / 1000} />
+      )}
     </Section>
   );
 }

@@ -40,7 +40,7 @@ function Rings({ drawn, size }: { drawn: readonly number[]; size: number }) {
         <g key={ring}>
           <circle r={ring} />
           <text x={size / 60} y={-ring - size / 60}>
-            {t("motion.in_g", { value: fixed(ring, ring < 1 ? 1 : 0) })}
+            {`${fixed(ring, ring < 1 ? 1 : 0)} g`}
           </text>
         </g>
       ))}

@@ -11,7 +11,7 @@ import { driveOf } from "./drive";
 import { happening } from "./happenings";
 import css from "./motion.module.css";
 import { Pictures } from "./Pictures";
-import { LENGTHS, type Length, moved, rangeOf, type View } from "./window";
+import { LENGTH_TEXT, LENGTHS, type Length, moved, rangeOf, type View } from "./window";
 
 interface LookProps {
   id: string;
@@ -62,8 +62,8 @@ function Lengths({ view, setView }: Pick<LookProps, "view" | "setView">) {
   const choose = (value: string) => setView({ ...view, length: Number(value) as Length });
   return (
     <SegmentedControl
-      aria-label={t("motion.length.label")}
-      data={LENGTHS.map((length) => ({ value: String(length), label: t(`motion.length.s${length}`) }))}
+      aria-label={t("motion.length")}
+      data={LENGTHS.map((length) => ({ value: String(length), label: LENGTH_TEXT[length] }))}
       value={String(view.length)}
       onChange={choose}
     />

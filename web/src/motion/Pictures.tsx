@@ -3,7 +3,7 @@ import { TimeAxis } from "../device/history/timeAxis";
 import { t } from "../text";
 import { AttitudePicture } from "./AttitudePicture";
 import { CHARTS } from "./charts";
-import type { Drive } from "./drive";
+import { type Drive, rowAt } from "./drive";
 import { FrictionCircle } from "./FrictionCircle";
 import type { Happening } from "./happenings";
 import css from "./motion.module.css";
@@ -14,12 +14,14 @@ import { TrackMap } from "./TrackMap";
 interface PicturesProps {
   drive: Drive;
   happenings: readonly Happening[];
+  /** s since 1970, the moment to begin with; else the last one */
+  begin?: number;
 }
 
 /** One moment of the drive in all pictures, chosen on any chart or played. */
-export function Pictures({ drive, happenings }: PicturesProps) {
+export function Pictures({ drive, happenings, begin }: PicturesProps) {
   const last = drive.time.length - 1;
-  const [chosen, setChosen] = useState<number | null>(null);
+  const [chosen, setChosen] = useState(() => (begin === undefined ? null : rowAt(drive.time, begin)));
   const row = Math.min(chosen ?? last, last);
   const choose = useCallback((at: number | null) => at !== null && setChosen(at), []);
   return (
@@ -71,15 +73,20 @@ export function Charts({ drive, happenings, row, onRow }: ChartsProps) {
     axis.look({ min: time[0] ?? 0, max: time.at(-1) ?? 1 });
     axis.reset();
   }, [axis, time]);
+  const names = CHARTS.filter(({ lines }) => lines.length > 1).flatMap(({ lines }) =>
+    lines.map(({ of }) => t(`motion.line.${of}`)),
+  );
   return (
     <div className={css.charts}>
-      {CHARTS.map(({ name, unit, digits, leastSpan, lines }) => (
+      {CHARTS.map(({ name, unit, digits, leastSpan, fromZero, lines }) => (
         <SeriesChart
           key={name}
           title={t(`motion.chart.${name}`)}
           unit={unit}
           digits={digits}
           leastSpan={leastSpan}
+          fromZero={fromZero}
+          names={names}
           time={time}
           lines={lines.map(({ of, ...line }) => ({
             ...line,

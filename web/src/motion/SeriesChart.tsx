@@ -15,6 +15,8 @@ interface SeriesChartProps {
   unit: string;
   digits: number;
   leastSpan: number;
+  fromZero: boolean;
+  names: readonly string[];
   time: readonly number[];
   lines: readonly (Line & { column: Column })[];
   axis: TimeAxis;
@@ -58,13 +60,13 @@ function valueText(value: number | null | undefined, digits: number): string {
 }
 
 function usePlot(props: SeriesChartProps) {
-  const { time, lines, axis, happenings, leastSpan, onCursor } = props;
+  const { time, lines, axis, happenings, leastSpan, fromZero, onCursor } = props;
   const element = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot>(null);
   const now = useRef(props);
   now.current = props;
   const scheme = useComputedColorScheme("light");
-  const names = lines.map(({ name }) => name).join();
+  const told = lines.map(({ name }) => name).join();
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: made anew when its lines or the page's colours are others
   useEffect(() => {
@@ -73,6 +75,8 @@ function usePlot(props: SeriesChartProps) {
       element: element.current,
       lines: now.current.lines,
       leastSpan,
+      fromZero,
+      names: now.current.names,
       time: axis,
       happenings: () => now.current.happenings,
       onCursor,
@@ -80,7 +84,7 @@ function usePlot(props: SeriesChartProps) {
     });
     plot.current = made;
     return remove;
-  }, [axis, names, leastSpan, scheme, onCursor]);
+  }, [axis, told, leastSpan, fromZero, scheme, onCursor]);
 
   // biome-ignore lint/correctness/useExhaustiveDependencies: a chart made anew needs its data again
   useEffect(() => {
@@ -89,7 +93,7 @@ function usePlot(props: SeriesChartProps) {
       plot.current?.setData([[...time], ...lines.map(({ column }) => [...column])], false);
       plot.current?.setScale("x", span);
     });
-  }, [axis, time, happenings, names, scheme]);
+  }, [axis, time, happenings, told, scheme]);
 
   return element;
 }

@@ -86,9 +86,9 @@ function Car({
   size: number;
 }) {
   const unit = size / 28;
-  if (heading === null) return <circle className={css.here} cx={place.x} cy={place.y} r={unit / 1.5} />;
+  if (heading === null) return <circle className={css.arrowhead} cx={place.x} cy={place.y} r={unit / 1.5} />;
   const turn = `translate(${place.x} ${place.y}) rotate(${heading}) scale(${unit})`;
-  return <path className={css.here} d="M0 -1.2L.85 1L0 .5L-.85 1Z" transform={turn} />;
+  return <path className={css.arrowhead} d="M0 -1.2L.85 1L0 .5L-.85 1Z" transform={turn} />;
 }
 
 function Scale({ track: { box, scale } }: { track: Track }) {

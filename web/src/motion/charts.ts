@@ -5,6 +5,7 @@ export const CHARTS = [
     unit: "m/s²",
     digits: 1,
     leastSpan: 4,
+    fromZero: false,
     lines: [
       { of: "longitudinal", colour: "--livella-x", dash: [] },
       { of: "lateral", colour: "--livella-y", dash: [7, 3] },
@@ -16,6 +17,7 @@ export const CHARTS = [
     unit: "km/h",
     digits: 0,
     leastSpan: 20,
+    fromZero: true,
     lines: [{ of: "speed", colour: "--livella-accent", dash: [] }],
   },
   {
@@ -23,6 +25,7 @@ export const CHARTS = [
     unit: "°/s",
     digits: 1,
     leastSpan: 10,
+    fromZero: false,
     lines: [{ of: "yaw_rate", colour: "--livella-accent", dash: [] }],
   },
   {
@@ -30,6 +33,7 @@ export const CHARTS = [
     unit: "°",
     digits: 1,
     leastSpan: 4,
+    fromZero: false,
     lines: [{ of: "sideslip", colour: "--livella-accent", dash: [] }],
   },
 ] as const;

@@ -19,6 +19,9 @@ export interface SeriesSettings {
   lines: readonly Line[];
   /** the axis never spans less */
   leastSpan: number;
+  fromZero: boolean;
+  /** names of lines in all charts that stand below one another: they begin and end together */
+  names: readonly string[];
   time: TimeAxis;
   happenings: () => readonly Happening[];
   onCursor: (row: number | null) => void;
@@ -52,6 +55,8 @@ function options({
   element,
   lines,
   leastSpan,
+  fromZero,
+  names,
   time,
   happenings,
   onCursor,
@@ -83,16 +88,11 @@ function options({
         },
       },
     },
-    scales: { x: { time: true, auto: false }, y: { range: (_, low, high) => widened(low, high, leastSpan) } },
-    padding: [
-      8,
-      roomForNames(
-        font,
-        lines.map(({ name }) => name),
-      ),
-      0,
-      0,
-    ],
+    scales: {
+      x: { time: true, auto: false },
+      y: { range: (_, low, high) => rangeFor(low, high, leastSpan, fromZero) },
+    },
+    padding: [8, roomForNames(font, names), 0, 0],
     axes: [
       { ...axis, size: 24, space: 70, values: (_, ticks, __, ___, step) => tickTimes(ticks, step) },
       {
@@ -117,6 +117,7 @@ function options({
       drawAxes: [(plot) => mark(plot, happenings(), { usual: ink, grave: bad })],
       draw: [
         (plot) =>
+          drawn.length > 1 &&
           nameLines(
             plot,
             font,
@@ -128,7 +129,13 @@ function options({
 }
 
 /** At least so high, and a little air above and below. */
-export function widened(low: number | null, high: number | null, least: number): [number, number] {
+export function rangeFor(
+  low: number | null,
+  high: number | null,
+  least: number,
+  fromZero: boolean,
+): [number, number] {
+  if (fromZero) return [Math.min(0, low ?? 0), Math.max(least, 1.06 * (high ?? 0))];
   if (low === null || high === null) return [-least / 2, least / 2];
   const room = Math.max(least - (high - low), 0.12 * (high - low)) / 2;
   return [low - room, high + room];

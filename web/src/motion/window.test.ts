@@ -28,3 +28,9 @@ test("the last data are followed until somebody moves back", () => {
 test("a moment is in the middle of what is shown around it", () => {
   expect(rangeOf(around(last), null)?.from).toBe("2026-01-02T09:55:00.000Z");
 });
+
+test("a long view moves on with the minutes, not with every chunk", () => {
+  const long = readView("length=3600");
+  expect(rangeOf(long, "2026-01-02T10:00:01Z")).toEqual(rangeOf(long, "2026-01-02T10:00:59Z"));
+  expect(rangeOf(long, "2026-01-02T10:00:01Z")?.to).toBe("2026-01-02T10:01:00.000Z");
+});

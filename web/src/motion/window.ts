@@ -4,6 +4,9 @@ import type { TimeRange } from "../api/keys";
 export const LENGTHS = [600, 3600, 21_600] as const;
 export type Length = (typeof LENGTHS)[number];
 
+/** The same in every language. */
+export const LENGTH_TEXT: Record<Length, string> = { 600: "10 min", 3600: "1 h", 21600: "6 h" };
+
 export interface View {
   /** s */
   length: Length;
@@ -27,10 +30,16 @@ export function writeView({ length, end }: View): URLSearchParams {
 
 /** What to ask for; the last data are not yet known: nothing to ask for. */
 export function rangeOf({ length, end }: View, lastData: string | null): TimeRange | null {
-  const last = end ?? (lastData === null ? null : Date.parse(lastData) / 1000);
-  if (last === null) return null;
+  if (end === null && lastData === null) return null;
+  const last = end ?? newest(lastData ?? "", length);
   const moment = (seconds: number) => new Date(seconds * 1000).toISOString();
   return { from: moment(last - length), to: moment(last) };
+}
+
+/** A long view is computed anew each minute only, however often data come in. */
+function newest(lastData: string, length: Length): number {
+  const last = Date.parse(lastData) / 1000;
+  return length === LENGTHS[0] ? last : 60 * Math.ceil(last / 60);
 }
 
 /** Half a view earlier (-1) or later (+1); beyond the last data it follows them again. */

@@ -110,6 +110,8 @@ export const alerts = {
     began: "began <when />",
     count: "seen {{number}} times",
     link: "Link to this alert",
+    event: "The impact, and the seconds around it",
+    events: "The drive and its events",
     only_device: "Only this device",
     select: "Select: {{what}}",
     acknowledge: "Acknowledge",

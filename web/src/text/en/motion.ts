@@ -15,8 +15,7 @@ export const motion = {
   play: "Play",
   pause: "Pause",
   moment: "Moment",
-  in_g: "{{value}} g",
-  length: { label: "Length", s600: "10 min", s3600: "1 h", s21600: "6 h" },
+  length: "Length",
   move: { label: "Move in time", earlier: "Earlier", later: "Later", latest: "Latest" },
   attitude: {
     title: "Attitude",

@@ -119,6 +119,8 @@ export const alerts: Translated<typeof en.alerts> = {
     began: "inizio: <when />",
     count: "visto {{number}} volte",
     link: "Collegamento a questo avviso",
+    event: "L’urto e i secondi attorno",
+    events: "Il percorso e i suoi eventi",
     only_device: "Solo questo dispositivo",
     select: "Seleziona: {{what}}",
     acknowledge: "Prendi in carico",

@@ -17,8 +17,7 @@ export const motion: Translated<typeof en.motion> = {
   play: "Riproduci",
   pause: "Pausa",
   moment: "Istante",
-  in_g: "{{value}} g",
-  length: { label: "Durata", s600: "10 min", s3600: "1 h", s21600: "6 h" },
+  length: "Durata",
   move: { label: "Spostarsi nel tempo", earlier: "Prima", later: "Dopo", latest: "Ultimi dati" },
   attitude: {
     title: "Orientamento",
