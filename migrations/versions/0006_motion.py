@@ -1,5 +1,7 @@
 """Samples as they came, events of the vehicle's motion, the class of a vehicle, the end of a mounting."""
 
+from typing import Any
+
 import sqlalchemy as sa
 from alembic import op
 
@@ -14,8 +16,8 @@ ADDED = (
     ("installations", "motion", sa.LargeBinary()),
     ("mounts", "ended_at", sa.BigInteger()),
 )
-MAY_GO = {"sqlite_where": sa.text("kept = 0"), "postgresql_where": sa.text("kept = false")}
-IMPACT = {"sqlite_where": sa.text("kind = 'impact'"), "postgresql_where": sa.text("kind = 'impact'")}
+MAY_GO: dict[str, Any] = {"sqlite_where": sa.text("kept = 0"), "postgresql_where": sa.text("kept = false")}
+IMPACT: dict[str, Any] = {"sqlite_where": sa.text("kind = 'impact'"), "postgresql_where": sa.text("kind = 'impact'")}
 
 
 def upgrade() -> None:
