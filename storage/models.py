@@ -266,16 +266,8 @@ motion_events = sa.Table(
     sa.Column("data", sa.JSON, nullable=False),
     sa.Index("ix_motion_events_device_pk_at_pk", "device_pk", "at", "pk"),
     sa.Index("ix_motion_events_device_pk_kind_at_pk", "device_pk", "kind", "at", "pk"),
+    sa.Index("ix_motion_events_session_pk_kind_t", "session_pk", "kind", "t"),
     sqlite_autoincrement=True,
-)
-is_impact = motion_events.c.kind == sa.literal_column("'impact'")
-"""As written in the index, so that queries find it."""
-sa.Index(
-    "ix_motion_events_impacts",
-    motion_events.c.session_pk,
-    motion_events.c.t,
-    sqlite_where=is_impact,
-    postgresql_where=is_impact,
 )
 
 alerts = sa.Table(

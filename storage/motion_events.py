@@ -1,13 +1,17 @@
 """What happened to vehicles: events of their motion, newest first in lists."""
 
 from collections.abc import Callable
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import Any, NamedTuple
 
 import sqlalchemy as sa
 
 from storage.database import ReadSession, WriteSession
-from storage.models import Instant, motion_events, raw_chunks, sessions
+from storage.models import MICROSECOND, Instant, motion_events, raw_chunks, sessions
+from storage.prepared import Prepared
+
+IMPACT = "impact"
+"""the kind around which samples are kept for ever"""
 
 
 class MotionEvent(NamedTuple):
@@ -18,6 +22,7 @@ class MotionEvent(NamedTuple):
     t: float
     """s on the session's clock, of the peak"""
     at: datetime
+    """of the peak, by what is known of the session's start"""
     data: dict[str, Any]
     """what more was found, SI units and radians"""
     session: str
@@ -52,6 +57,12 @@ _select = (
 )
 _find = _select.where(motion_events.c.pk == sa.bindparam("pk"))
 _add = sa.insert(motion_events).returning(motion_events.c.pk)
+_moment = sa.type_coerce(motion_events.c.at, sa.BigInteger)
+_move = Prepared(
+    sa.update(motion_events)
+    .where(motion_events.c.session_pk == sa.bindparam("of_session_pk"))
+    .values(at=sa.type_coerce(_moment - sa.bindparam("earlier", type_=sa.BigInteger), Instant))
+)
 
 
 def add(
@@ -67,6 +78,11 @@ def add(
     session_pk, seq = chunk
     values = {"device_pk": device_pk, "session_pk": session_pk, "seq": seq, "kind": kind, "t": t, "at": at}
     return int(tx.execute(_add, **values, data=data).scalar_one())
+
+
+def move(tx: WriteSession, session_pk: int, earlier: timedelta) -> None:
+    """Let the events of a session be earlier: it is now known to have begun so."""
+    tx.run(_move, of_session_pk=session_pk, earlier=earlier // MICROSECOND)
 
 
 def find(tx: ReadSession, device_pk: int, pk: int) -> MotionEvent | None:

@@ -15,13 +15,13 @@ from storage.models import (
     EPOCH,
     MICROSECOND,
     Instant,
-    is_impact,
     microseconds,
     motion_events,
     raw_chunks,
     raw_may_go,
     sessions,
 )
+from storage.motion_events import IMPACT
 from storage.prepared import Prepared
 
 
@@ -108,8 +108,8 @@ _old = (
     .limit(sa.bindparam("limit"))
 )
 _near_impact = sa.exists().where(
-    is_impact,
     motion_events.c.session_pk == raw_chunks.c.session_pk,
+    motion_events.c.kind == IMPACT,
     motion_events.c.t >= raw_chunks.c.t_first - sa.bindparam("seconds_after"),
     motion_events.c.t <= raw_chunks.c.t_last + sa.bindparam("seconds_before"),
 )

@@ -27,7 +27,7 @@ from api.services.errors import UNKNOWN_DEVICE, NotFoundError, NotStillError, Un
 from api.services.foresight import Beginning, Foresight, advance, detect
 from api.services.speed_trace import Trace
 from core.motion.events import MotionEvent
-from storage import installations, mounts
+from storage import installations, motion_events, mounts
 from storage.database import WriteSession
 from storage.installations import Installation
 from storage.mounts import Mount
@@ -150,6 +150,8 @@ class Calibration:
         self._state = state
         began = received_at - timedelta(seconds=t_last)
         started_at = min(session.started_at or began, began)
+        if session.started_at is not None and started_at < session.started_at:
+            motion_events.move(self.tx, session.pk, session.started_at - started_at)
         session = session._replace(started_at=started_at)
         lag = self.now - started_at - timedelta(seconds=t_last)
         metrics.LAG.observe(max(lag.total_seconds(), 0.0))

@@ -17,7 +17,6 @@ ADDED = (
     ("mounts", "ended_at", sa.BigInteger()),
 )
 MAY_GO: dict[str, Any] = {"sqlite_where": sa.text("kept = 0"), "postgresql_where": sa.text("kept = false")}
-IMPACT: dict[str, Any] = {"sqlite_where": sa.text("kind = 'impact'"), "postgresql_where": sa.text("kind = 'impact'")}
 
 
 def upgrade() -> None:
@@ -63,9 +62,8 @@ def _motion_events() -> None:
         sa.PrimaryKeyConstraint("pk", name="pk_motion_events"),
         sqlite_autoincrement=True,
     )
-    for columns in (["device_pk", "at", "pk"], ["device_pk", "kind", "at", "pk"]):
+    for columns in (["device_pk", "at", "pk"], ["device_pk", "kind", "at", "pk"], ["session_pk", "kind", "t"]):
         op.create_index(f"ix_motion_events_{'_'.join(columns)}", "motion_events", columns, unique=False)
-    op.create_index("ix_motion_events_impacts", "motion_events", ["session_pk", "t"], unique=False, **IMPACT)
 
 
 def _of_device(table: str) -> sa.ForeignKeyConstraint:

@@ -22,6 +22,7 @@ from tests.drives import CHUNK_SECONDS, remounted
 from tests.service import Api, Device, Json
 from tests.watched import the_alert
 
+LITTLE = timedelta(seconds=0.1)
 KINDS = ("impact", "harsh_braking", "harsh_acceleration", "harsh_cornering", "pothole")
 
 
@@ -56,6 +57,28 @@ def test_a_crash_is_told_with_direction_and_size(api: Api, clock: Clock) -> None
     assert event["speed_change_mps"] == pytest.approx(change.tolist(), abs=0.15 * float(np.hypot(*change)))
     assert event["peak_mps2"] == pytest.approx(story.hit.peak, rel=0.25)
     assert (event["mount"], event["session"], event["kept"]) == (1, "a", True)
+
+
+def test_events_move_with_what_is_known_of_the_beginning_of_their_session(api: Api, clock: Clock) -> None:
+    """As `/motion` tells them; those of another session stay."""
+    story, device = crashed(), api.add_device()
+    play(device, clock, story.chunks, "before")
+    begun = clock.now
+    clock.advance(3600.0)
+    for seq, body in enumerate(story.chunks):
+        device.send(body, seq, "late", expect=200)  # a minute of samples in no time
+    new, old = listed(device, kind="impact")
+    moment = datetime.fromisoformat(new["at"])
+    sent = begun + timedelta(hours=1)
+    assert moment == pytest.approx(sent - timedelta(seconds=len(story.chunks) * CHUNK_SECONDS - new["t"]), abs=LITTLE)
+    motion = device.get("motion", params={"from": _around(moment, -5), "to": _around(moment, 5)})
+    assert min(motion["columns"]["longitudinal_mps2"]) < -0.5 * new["peak_mps2"]
+    assert datetime.fromisoformat(old["at"]) < begun
+    assert listed(device, kind="impact", to=begun.isoformat()) == [old]
+
+
+def _around(moment: datetime, seconds: float) -> str:
+    return (moment + timedelta(seconds=seconds)).isoformat()
 
 
 def test_an_impact_is_an_alert_that_stays_open(api: Api, clock: Clock) -> None:
