@@ -549,7 +549,7 @@ class FleetSummary(Document):
 class Threshold(Document):
     """One of the numbers the service decides by."""
 
-    name: str = Field(description="As in `core/params.py`, `api/services/rules/limits.py` and the settings.")
+    name: str = Field(description="As in the tables of `core/`, `api/services/rules/limits.py` and the settings.")
     group: ThresholdGroup
     value: int | float | str = Field(description="`infinite` is the only text.")
     unit: str = Field(description="Such as `deg`, `s`, `m/s`; empty when it is a mere number.")

@@ -244,7 +244,7 @@ def test_the_filters_stand_in_the_address(visitor: Visitor, api: Api, service: S
     page = visitor.page
     expect(alerts(visitor)).to_have_count(len(kinds))
     page.get_by_role("combobox", name="Severity").select_option("Critical")
-    expect(alerts(visitor)).to_have_count(3)
+    expect(alerts(visitor)).to_have_count(4)
     page.get_by_role("combobox", name="Kind").select_option("Sensor fault")
     expect(alerts(visitor)).to_have_count(2)
     expect(page).to_have_url(visitor.address + "/alerts?kind=sensor_fault&severity=critical")

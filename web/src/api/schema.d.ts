@@ -1993,7 +1993,7 @@ export interface components {
         Threshold: {
             /**
              * Name
-             * @description As in `core/params.py`, `api/services/rules/limits.py` and the settings.
+             * @description As in the tables of `core/`, `api/services/rules/limits.py` and the settings.
              */
             name: string;
             /**

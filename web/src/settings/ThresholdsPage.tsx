@@ -5,8 +5,6 @@ import { t } from "../text";
 import css from "./settings.module.css";
 import { valueText } from "./thresholds";
 
-const GROUPS = ["settling", "verification", "change", "alerts", "upload", "retention"] as const;
-
 /** What the service decides by, to be read. */
 export function ThresholdsPage() {
   const thresholds = useThresholds();
@@ -22,14 +20,19 @@ export function ThresholdsPage() {
         />
       )}
       {thresholds.data?.length === 0 && <p className={css.quiet}>{t("settings.thresholds.none")}</p>}
-      {thresholds.data && GROUPS.map((group) => <Group key={group} name={group} of={thresholds.data} />)}
+      {thresholds.data &&
+        groups(thresholds.data).map((group) => <Group key={group} name={group} of={thresholds.data} />)}
     </>
   );
 }
 
+/** In the order of the service. */
+function groups(of: readonly Threshold[]): Threshold["group"][] {
+  return [...new Set(of.map(({ group }) => group))];
+}
+
 function Group({ name, of }: { name: Threshold["group"]; of: readonly Threshold[] }) {
   const items = of.filter(({ group }) => group === name);
-  if (items.length === 0) return null;
   return (
     <div className="card">
       <table className={css.table}>
