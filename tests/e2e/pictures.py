@@ -113,10 +113,12 @@ def picture_fleet(chromium: Browser, client: httpx.Client) -> None:
     url = str(client.base_url).removesuffix("/api/v1/")
     key = client.headers["Authorization"].removeprefix("Bearer ")
     with looking(chromium, url, key, DESK) as visitor:
-        visitor.see("Parcel van in town")
+        visitor.see("Van in a jam")
         take(visitor.page, "fleet-desk")
         picture_alert(visitor)
         picture_past(visitor)
+    with looking(chromium, url, key, {"width": 1280, "height": 1340}) as visitor:
+        picture_motion(visitor)
     with looking(chromium, url, key, DESK, color_scheme="dark") as visitor:
         visitor.open("/alerts")
         visitor.see("Acknowledge")
@@ -142,6 +144,16 @@ def picture_past(visitor: Visitor) -> None:
     region = visitor.page.get_by_role("region", name="Angle history")
     region.evaluate("region => scrollTo(0, region.getBoundingClientRect().top + scrollY - 120)")
     take(visitor.page, "history-desk")
+
+
+def picture_motion(visitor: Visitor) -> None:
+    """How a vehicle moved that was hit, and the impact."""
+    visitor.open("/devices/car-208/motion")
+    visitor.see("Friction circle")
+    take(visitor.page, "motion-desk")
+    visitor.page.get_by_role("listitem").filter(has_text="Impact").get_by_role("link", name="Details").click()
+    visitor.page.get_by_role("img", name="The vehicle from above").wait_for()
+    take(visitor.page, "impact-desk")
 
 
 def _alerts(visitor: Visitor) -> list[dict[str, Any]]:
