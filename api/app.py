@@ -125,7 +125,7 @@ async def _lifespan(
 
 async def _warm_up(context: Context, ready: threading.Event, when_ready: Callable[[], None]) -> None:
     try:
-        await to_thread.run_sync(startup.warm_up, context)
+        await to_thread.run_sync(startup.warm_up, context.params)
     except Exception:
         log.exception("the estimator cannot be compiled; the service stays unready")
         return

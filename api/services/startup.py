@@ -25,7 +25,7 @@ def prepare(context: Context) -> str | None:
         return keyring.first_admin_key(tx, context)
 
 
-def warm_up(context: Context) -> None:
+def warm_up(params: core.Parameters) -> None:
     """Compile what reads CSV, estimates, detects events and reconstructs, on two seconds of a parked vehicle."""
     parse(b"t,ax,ay,az,fix,speed,course\n0,0,0,9.81,1,0,0\n", "text/csv", None)
     t = np.arange(0.0, 2.0, 0.01)
@@ -35,8 +35,8 @@ def warm_up(context: Context) -> None:
     fix[:, [core.FIX_COLUMNS.index(name) for name in ("speed", "course")]] = 0.0
     for w_s in (None, np.zeros_like(f_s)):
         samples = core.Samples.make(t, f_s, w_s, rows, np.ones(rows.size, np.bool_), fix)
-        state = core.begin_session(context.params, core.initial_state(context.params))
-        state, _ = core.advance(context.params, state, samples)
+        state = core.begin_session(params, core.initial_state(params))
+        state, _ = core.advance(params, state, samples)
         core.decode(core.encode(state))
         detecting.detect(None, LEVEL, (), samples)
         reconstruct(VEHICLES["sedan"], LEVEL, samples)
