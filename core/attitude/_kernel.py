@@ -199,7 +199,21 @@ def start(method, p, s, f, m, scratch):
     size = math.sqrt(dot(f, f))
     if not p.least_force * GRAVITY < size < p.most_force * GRAVITY:
         return
-    level, north = scratch[0], scratch[1]
+    if is_reading(m, MOST_FIELD):
+        s.field[:] = m
+        s.field_now[:] = m
+    s.force[:] = f
+    s.mean_force[:] = f
+    s.spread, s.age, s.pending = 0.0, 0.0, 0.0
+    s.turned[0], s.turned[1], s.turned[2], s.turned[3] = 1.0, 0.0, 0.0, 0.0
+    place(method, p, s, m, scratch)
+    s.started = True
+
+
+@njit(cache=True, nogil=True)
+def place(method, p, s, m, scratch):
+    """Put the attitude where the averaged force and the field, if it is a reading, say; that of before counts no more."""
+    level, north, f = scratch[0], scratch[1], s.mean_force
     roll, pitch = math.atan2(f[1], f[2]), math.atan2(-f[0], math.hypot(f[1], f[2]))
     yaw = s.angles[2]  # after a gap that of before
     if is_reading(m, MOST_FIELD):
@@ -210,18 +224,11 @@ def start(method, p, s, f, m, scratch):
             s.compass = True
             if s.field_strength == 0.0:
                 s.field_strength = math.sqrt(dot(m, m))
-                s.field_dip = -dot(m, f) / (s.field_strength * size)
+                s.field_dip = -dot(m, f) / (s.field_strength * math.sqrt(dot(f, f)))
                 s.field_weight = 0.0
-            s.field[:] = m
-            s.field_now[:] = m
     from_angles(roll, pitch, yaw, s.q)
     s.angles[0], s.angles[1], s.angles[2] = roll, pitch, yaw
-    s.force[:] = f
-    s.mean_force[:] = f
-    s.spread, s.age, s.pending = 0.0, 0.0, 0.0
-    s.turned[0], s.turned[1], s.turned[2], s.turned[3] = 1.0, 0.0, 0.0, 0.0
     start_covariance(method, p, s)
-    s.started = True
 
 
 @njit(cache=True, nogil=True)
@@ -294,7 +301,8 @@ def average_force(p, s, f, dt):
     """Average the specific force twice over `force_time`, faster while there is little to average."""
     if not dot(f, f) < MOST_FORCE * MOST_FORCE:
         return
-    gain = max(dt / (p.force_time + dt), dt / (s.age + dt))
+    time = s.age if s.age < p.settle_time and s.spread > p.settle_spread**2 else min(p.force_time, s.age)
+    gain = dt / (time + dt)
     square = 0.0
     for i in range(3):
         change = f[i] - s.force[i]
@@ -379,7 +387,9 @@ def correct(method, p, s, scratch):
     force = math.sqrt(dot(s.mean_force, s.mean_force))
     usable = p.least_force * GRAVITY < force < p.most_force * GRAVITY
     seen = s.field_trust >= p.field_calm and s.field_weight > 0.0
-    if method == LINEAR:
+    if usable and s.age < p.settle_time and s.spread > p.settle_spread**2 and method != GYRO:
+        place(method, p, s, s.field_now, scratch)
+    elif method == LINEAR:
         linear(p, s, force, usable)
     elif method == EKF:
         predict(p, s, scratch)

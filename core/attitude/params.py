@@ -36,6 +36,11 @@ class Parameters:
     excess_noise: float = 1.5
     """sqrt(s), of the same for each g its size is off"""
 
+    settle_time: float = 5.0
+    """s from a start in the middle of motion for which the attitude is put where the averages say"""
+    settle_spread: float = 1.0
+    """m/s2, spread that is motion"""
+
     # Magnetic field
     field_time: float = 0.05
     """s over which it is averaged"""
