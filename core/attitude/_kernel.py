@@ -685,13 +685,14 @@ def madgwick(p, s, scratch, force, usable, seen):
     error, step, drift = scratch[0], scratch[1], scratch[2]
     gradient_errors(s, scratch, force, usable, seen, error)
     square = error[0] * error[0] + error[1] * error[1]
-    gain, bias_gain = gains(p, s.covariance, 0, s.pending, tilt_variance(p, s, force), square, usable)
-    for axis in range(2):
-        step[axis], drift[axis] = step_and_drift(p, s, gain, bias_gain, error[axis])
+    variance = tilt_variance(p, s, force)
+    gain, along, across = gains(p, s.covariance, 0, s.pending, turned_about_up(s, scratch), variance, square, usable)
+    step[0], drift[0] = step_and_drift(p, s, gain, error[0], along * error[0] + across * error[1])
+    step[1], drift[1] = step_and_drift(p, s, gain, error[1], along * error[1] - across * error[0])
     slope = s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # a tilt turns the field aside
     variance = heading_variance(p, s) + s.covariance[0, 0] * slope
-    gain, bias_gain = gains(p, s.covariance, 2, s.pending, variance, error[2] * error[2], seen)
-    step[2], drift[2] = step_and_drift(p, s, gain, bias_gain, error[2])
+    gain, along, _ = gains(p, s.covariance, 2, s.pending, 0.0, variance, error[2] * error[2], seen)
+    step[2], drift[2] = step_and_drift(p, s, gain, error[2], along * error[2])
     rotation(-step[0], -step[1], -step[2], error)
     into_sensor(s.q, drift, drift)
     product(error, s.q, s.q)
@@ -723,24 +724,36 @@ def gradient_errors(s, scratch, force, usable, seen, error):
 
 
 @njit(cache=True, nogil=True)
-def gains(p, cov, i, T, variance, square, seen):
+def gains(p, cov, i, T, turned, variance, square, seen):
     """Kalman gains of an angle and of the bias of its rate (001 eq. 6.10, 6.2-6.8) for a measurement of the angle.
 
-    `cov` is taken over the time `T` and past the measurement, whose innovation has the square `square`.
+    `cov` is taken over the time `T` and past the measurement, whose innovation has the square `square`. Two angles
+    across each other are one complex number, and so is the bias of their rates, which the device has `turned` by (rad)
+    since: the covariance of both is `cov[i, b] + i cov[b, i]`, and the gain of the bias has two parts too.
     """
     b = 4 + i
-    crossing = cov[i, b] - T * cov[b, b]
-    cov[i, i] += T * (T * cov[b, b] - 2 * cov[i, b] + p.angle_noise * p.angle_noise)
-    cov[i, b] = crossing
+    c, s = math.cos(turned), math.sin(turned)
+    along = c * cov[i, b] + s * cov[b, i]
+    across = c * cov[b, i] - s * cov[i, b]
+    cov[i, i] += T * (T * cov[b, b] - 2 * along + p.angle_noise * p.angle_noise)
+    along -= T * cov[b, b]
     cov[b, b] += p.bias_walk * p.bias_walk * T
-    if not seen:
-        return 0.0, 0.0
     S = cov[i, i] + doubted(p, variance, square, cov[i, i])
-    gain, bias_gain = cov[i, i] / S, crossing / S
-    cov[b, b] -= bias_gain * crossing
-    cov[i, b] -= gain * crossing
-    cov[i, i] -= gain * cov[i, i]
-    return gain, bias_gain
+    gain = cov[i, i] / S if seen else 0.0
+    share = 1.0 / S if seen else 0.0
+    cov[b, b] -= share * (along * along + across * across)
+    cov[i, b] = (1.0 - gain) * along
+    cov[b, i] = (1.0 - gain) * across
+    cov[i, i] *= 1.0 - gain
+    return gain, share * along, share * across
+
+
+@njit(cache=True, nogil=True)
+def turned_about_up(s, scratch):
+    """Angle (rad) that the device turned about the vertical since the last correction."""
+    turned = scratch[3]
+    into_level(s.q, s.turned[1:4], turned)
+    return 2.0 * turned[2]
 
 
 @njit(cache=True, nogil=True)
@@ -751,11 +764,11 @@ def about(q, slope, axis):
 
 
 @njit(cache=True, nogil=True)
-def step_and_drift(p, s, gain, bias_gain, error):
-    """Shares of an error for the angle, no faster than `beta`, and for the bias, which learns as much less."""
+def step_and_drift(p, s, gain, error, drift):
+    """Share of an error for the angle, no faster than `beta`, and the drift of the bias, as much less."""
     wanted, most = gain * error, p.beta * s.pending
     step = min(max(wanted, -most), most)
-    return step, bias_gain * error * (step / wanted if wanted != 0.0 else 1.0)
+    return step, drift * (step / wanted if wanted != 0.0 else 1.0)
 
 
 @njit(cache=True, nogil=True)
@@ -780,7 +793,7 @@ def linear(p, s, force, usable):
     for i in range(2):
         innovation = wrap(angle[i] - s.angles[i])
         square = innovation * innovation
-        gain, bias_gain = gains(p, cov, i, s.pending, tilt_variance(p, s, force), square, usable)
+        gain, bias_gain, _ = gains(p, cov, i, s.pending, 0.0, tilt_variance(p, s, force), square, usable)
         s.angles[i] += gain * innovation
         s.bias[i] += bias_gain * innovation
         s.sigma[i] = math.sqrt(cov[i, i])
