@@ -390,7 +390,7 @@ def correct(method, p, s, scratch):
     if usable and s.age < p.settle_time and s.spread > p.settle_spread**2 and method != GYRO:
         place(method, p, s, s.field_now, scratch)
     elif method == LINEAR:
-        linear(p, s, force, usable)
+        linear(p, s, scratch, force, usable)
     elif method == EKF:
         predict(p, s, scratch)
         ekf(p, s, scratch, force, usable, seen)
@@ -481,8 +481,7 @@ def predict(p, s, scratch):
         for j in range(4, 7):
             cov[i, j] = A[i, j]
             cov[j, i] = A[i, j]
-    for i in range(4, 7):
-        cov[i, i] += p.bias_walk * p.bias_walk * T
+    walk(p, s)
 
 
 @njit(cache=True, nogil=True)
@@ -682,23 +681,33 @@ def madgwick(p, s, scratch, force, usable, seen):
     faster than `beta`. Of the field's gradient only the part about the vertical counts: a disturbed field shall not
     tilt.
     """
-    error, step, drift = scratch[0], scratch[1], scratch[2]
+    error, step, gain, axes = scratch[0], scratch[1], scratch[6], scratch[8:11, 0:3]
     gradient_errors(s, scratch, force, usable, seen, error)
-    square = error[0] * error[0] + error[1] * error[1]
-    variance = tilt_variance(p, s, force)
-    gain, along, across = gains(p, s.covariance, 0, s.pending, turned_about_up(s, scratch), variance, square, usable)
-    step[0], drift[0] = step_and_drift(p, s, gain, error[0], along * error[0] + across * error[1])
-    step[1], drift[1] = step_and_drift(p, s, gain, error[1], along * error[1] - across * error[0])
-    slope = s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # a tilt turns the field aside
-    variance = heading_variance(p, s) + s.covariance[0, 0] * slope
-    gain, along, _ = gains(p, s.covariance, 2, s.pending, 0.0, variance, error[2] * error[2], seen)
-    step[2], drift[2] = step_and_drift(p, s, gain, error[2], along * error[2])
+    for i in range(3):
+        step[i] = 0.0
+        for j in range(3):
+            axes[i, j] = 1.0 if i == j else 0.0
+        into_sensor(s.q, axes[i], axes[i])
+    predict_angles(p, s, axes)
+    for i in range(3):
+        if not (usable if i < 2 else seen):
+            continue
+        if i < 2:
+            variance, square = tilt_variance(p, s, force), error[0] * error[0] + error[1] * error[1]
+        else:
+            variance, square = heading_variance(p, s), error[2] * error[2]
+            variance += s.covariance[0, 0] * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # as it turns
+        measure_angle(p, s, i, variance, square, gain, scratch[5])
+        innovation = error[i] - step[i]
+        wanted, most = abs(gain[i] * innovation), p.beta * s.pending
+        if wanted > most:
+            innovation *= most / wanted
+        for j in range(3):
+            step[j] += gain[j] * innovation
+            s.bias[j] -= gain[4 + j] * innovation
     rotation(-step[0], -step[1], -step[2], error)
-    into_sensor(s.q, drift, drift)
     product(error, s.q, s.q)
     normalise(s.q)
-    for i in range(3):
-        s.bias[i] -= drift[i]
 
 
 @njit(cache=True, nogil=True)
@@ -724,36 +733,45 @@ def gradient_errors(s, scratch, force, usable, seen, error):
 
 
 @njit(cache=True, nogil=True)
-def gains(p, cov, i, T, turned, variance, square, seen):
-    """Kalman gains of an angle and of the bias of its rate (001 eq. 6.10, 6.2-6.8) for a measurement of the angle.
+def predict_angles(p, s, axes):
+    """Covariance of three angles and the bias over the time since the last correction (001 eq. 6.10).
 
-    `cov` is taken over the time `T` and past the measurement, whose innovation has the square `square`. Two angles
-    across each other are one complex number, and so is the bias of their rates, which the device has `turned` by (rad)
-    since: the covariance of both is `cov[i, b] + i cov[b, i]`, and the gain of the bias has two parts too.
+    The rate of angle i is that of the gyroscope about the sensor axis `axes[i]`.
     """
-    b = 4 + i
-    c, s = math.cos(turned), math.sin(turned)
-    along = c * cov[i, b] + s * cov[b, i]
-    across = c * cov[b, i] - s * cov[i, b]
-    cov[i, i] += T * (T * cov[b, b] - 2 * along + p.angle_noise * p.angle_noise)
-    along -= T * cov[b, b]
-    cov[b, b] += p.bias_walk * p.bias_walk * T
-    S = cov[i, i] + doubted(p, variance, square, cov[i, i])
-    gain = cov[i, i] / S if seen else 0.0
-    share = 1.0 / S if seen else 0.0
-    cov[b, b] -= share * (along * along + across * across)
-    cov[i, b] = (1.0 - gain) * along
-    cov[b, i] = (1.0 - gain) * across
-    cov[i, i] *= 1.0 - gain
-    return gain, share * along, share * across
+    cov, T = s.covariance, s.pending
+    for i in range(3):
+        for j in range(3):
+            cov[i, j] -= T * dot(axes[i], cov[j, 4:7])
+    for i in range(3):
+        for k in range(4, 7):
+            cov[i, k] -= T * dot(axes[i], cov[k, 4:7])
+    for i in range(3):
+        for j in range(3):
+            cov[i, j] -= T * dot(cov[i, 4:7], axes[j])
+        for k in range(4, 7):
+            cov[k, i] = cov[i, k]
+        cov[i, i] += p.angle_noise * p.angle_noise * T
+    walk(p, s)
 
 
 @njit(cache=True, nogil=True)
-def turned_about_up(s, scratch):
-    """Angle (rad) that the device turned about the vertical since the last correction."""
-    turned = scratch[3]
-    into_level(s.q, s.turned[1:4], turned)
-    return 2.0 * turned[2]
+def measure_angle(p, s, i, variance, square, gain, own):
+    """Gains (001 eq. 6.4-6.8) of a measurement of angle `i`, whose innovation has the square `square`."""
+    cov = s.covariance
+    S = cov[i, i] + doubted(p, variance, square, cov[i, i])
+    for j in range(7):
+        own[j] = cov[j, i]
+        gain[j] = 0.0 if i == 2 and j < 2 else own[j] / S
+    for j in range(7):
+        for k in range(7):
+            cov[j, k] += gain[j] * gain[k] * S - gain[j] * own[k] - own[j] * gain[k]
+
+
+@njit(cache=True, nogil=True)
+def walk(p, s):
+    """Covariance of the bias over the time since the last correction."""
+    for i in range(4, 7):
+        s.covariance[i, i] += p.bias_walk * p.bias_walk * s.pending
 
 
 @njit(cache=True, nogil=True)
@@ -761,14 +779,6 @@ def about(q, slope, axis):
     """Component of a gradient for rotations about east, north or up."""
     u = level_axis(q, axis)
     return u[0] * slope[0] + u[1] * slope[1] + u[2] * slope[2] + u[3] * slope[3]
-
-
-@njit(cache=True, nogil=True)
-def step_and_drift(p, s, gain, error, drift):
-    """Share of an error for the angle, no faster than `beta`, and the drift of the bias, as much less."""
-    wanted, most = gain * error, p.beta * s.pending
-    step = min(max(wanted, -most), most)
-    return step, drift * (step / wanted if wanted != 0.0 else 1.0)
 
 
 @njit(cache=True, nogil=True)
@@ -786,15 +796,19 @@ def turn_linear(p, s, rate, dt):
 
 
 @njit(cache=True, nogil=True)
-def linear(p, s, force, usable):
+def linear(p, s, scratch, force, usable):
     """Linear Kalman filter of 001 6.1: roll and pitch, each with the bias of its own gyroscope."""
-    cov, f = s.covariance, s.mean_force
+    f, gain, axes = s.mean_force, scratch[6], scratch[8:11, 0:3]
     angle = (math.atan2(f[1], f[2]), math.atan2(-f[0], math.hypot(f[1], f[2])))
+    for i in range(3):
+        for j in range(3):
+            axes[i, j] = 1.0 if i == j else 0.0
+    predict_angles(p, s, axes)
     for i in range(2):
         innovation = wrap(angle[i] - s.angles[i])
-        square = innovation * innovation
-        gain, bias_gain, _ = gains(p, cov, i, s.pending, 0.0, tilt_variance(p, s, force), square, usable)
-        s.angles[i] += gain * innovation
-        s.bias[i] += bias_gain * innovation
-        s.sigma[i] = math.sqrt(cov[i, i])
+        if usable:
+            measure_angle(p, s, i, tilt_variance(p, s, force), innovation * innovation, gain, scratch[5])
+            s.angles[i] += gain[i] * innovation
+            s.bias[i] += gain[4 + i] * innovation
+        s.sigma[i] = math.sqrt(s.covariance[i, i])
     from_angles(s.angles[0], s.angles[1], s.angles[2], s.q)
