@@ -34,6 +34,7 @@ STATE = np.dtype(
         ("t", "f8"),  # s of the last sample, nan before the first
         ("started", "?"),  # whether there is an attitude
         ("compass", "?"),  # whether heading is that of the magnetic field
+        ("settling", "?"),  # whether it was shaken ever since, so that averages tell more than the filter knows
         ("age", "f8"),  # s since the attitude was found
         ("rate_age", "f8"),  # s since the last reading of the gyroscope
         ("pending", "f8"),  # s since the last correction
@@ -204,7 +205,7 @@ def start(method, p, s, f, m, scratch):
         s.field_now[:] = m
     s.force[:] = f
     s.mean_force[:] = f
-    s.spread, s.age, s.pending = 0.0, 0.0, 0.0
+    s.spread, s.age, s.pending, s.settling = 0.0, 0.0, 0.0, True
     s.turned[0], s.turned[1], s.turned[2], s.turned[3] = 1.0, 0.0, 0.0, 0.0
     place(method, p, s, m, scratch)
     s.started = True
@@ -301,7 +302,7 @@ def average_force(p, s, f, dt):
     """Average the specific force twice over `force_time`, faster while there is little to average."""
     if not dot(f, f) < MOST_FORCE * MOST_FORCE:
         return
-    time = s.age if s.age < p.settle_time and s.spread > p.settle_spread**2 else min(p.force_time, s.age)
+    time = s.age if s.settling and s.spread > p.settle_spread**2 else min(p.force_time, s.age)
     gain = dt / (time + dt)
     square = 0.0
     for i in range(3):
@@ -387,7 +388,9 @@ def correct(method, p, s, scratch):
     force = math.sqrt(dot(s.mean_force, s.mean_force))
     usable = p.least_force * GRAVITY < force < p.most_force * GRAVITY
     seen = s.field_trust >= p.field_calm and s.field_weight > 0.0
-    if usable and s.age < p.settle_time and s.spread > p.settle_spread**2 and method != GYRO:
+    shaken = s.spread > p.settle_spread * p.settle_spread
+    s.settling = s.settling and s.age < p.settle_time and (shaken or s.age < p.settle_look)
+    if usable and shaken and s.settling and method != GYRO:
         place(method, p, s, s.field_now, scratch)
     elif method == LINEAR:
         linear(p, s, scratch, force, usable)
@@ -696,7 +699,7 @@ def madgwick(p, s, scratch, force, usable, seen):
             variance, square = tilt_variance(p, s, force), error[0] * error[0] + error[1] * error[1]
         else:
             variance, square = heading_variance(p, s), error[2] * error[2]
-            variance += s.covariance[0, 0] * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # as it turns
+            variance += p.least_cosine*10/s.pending*s.covariance[0, 0] * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # as it turns
         measure_angle(p, s, i, variance, square, gain, scratch[5])
         innovation = error[i] - step[i]
         wanted, most = abs(gain[i] * innovation), p.beta * s.pending

@@ -36,8 +36,10 @@ class Parameters:
     excess_noise: float = 1.5
     """sqrt(s), of the same for each g its size is off"""
 
-    settle_time: float = 5.0
+    settle_time: float = 6.0
     """s from a start in the middle of motion for which the attitude is put where the averages say"""
+    settle_look: float = 0.5
+    """s after which stillness ends that"""
     settle_spread: float = 1.0
     """m/s2, spread that is motion"""
 
@@ -113,8 +115,9 @@ MADGWICK = replace(
     tilt_noise=radians(0.055),
     shake_noise=0.056,
     field_noise=radians(0.4),
-    gate=5.0,
-    angle_noise=radians(0.015),
+    start_bias=radians(0.5),
+    gate=1.0,
+    angle_noise=radians(0.03),
     bias_walk=radians(0.002),
 )
 """Its two angles know nothing of each other, so that more is left to chance."""
