@@ -699,7 +699,7 @@ def madgwick(p, s, scratch, force, usable, seen):
             variance, square = tilt_variance(p, s, force), error[0] * error[0] + error[1] * error[1]
         else:
             variance, square = heading_variance(p, s), error[2] * error[2]
-            variance += p.least_cosine*10/s.pending*s.covariance[0, 0] * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # as it turns
+            variance += s.covariance[0, 0] * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # as it turns
         measure_angle(p, s, i, variance, square, gain, scratch[5])
         innovation = error[i] - step[i]
         wanted, most = abs(gain[i] * innovation), p.beta * s.pending
