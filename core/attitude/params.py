@@ -21,9 +21,9 @@ class Parameters:
     # Specific force
     force_time: float = 0.7
     """s over which it is averaged, twice"""
-    spread_time: float = 4.0
+    spread_time: float = 15.0
     """s over which its spread is averaged where it falls"""
-    spread_rise: float = 0.1
+    spread_rise: float = 0.2
     """s, the same where it rises"""
     least_force: float = 0.5
     """of gravity: below it tells nothing of the vertical, as in free fall"""
@@ -31,9 +31,9 @@ class Parameters:
     """of gravity"""
     tilt_noise: float = radians(0.2)
     """rad sqrt(s), of its average's direction at rest"""
-    shake_noise: float = 0.12
+    shake_noise: float = 0.08
     """sqrt(s), of the same for each g of spread"""
-    excess_noise: float = 1.5
+    excess_noise: float = 1.0
     """sqrt(s), of the same for each g its size is off"""
 
     settle_time: float = 6.0
@@ -48,7 +48,7 @@ class Parameters:
     """s over which it is averaged"""
     field_moment: float = 0.05
     """s over which it is averaged to judge it"""
-    field_noise: float = radians(0.5)
+    field_noise: float = radians(0.22)
     """rad sqrt(s), of its average's direction"""
     field_tolerance: float = 0.05
     """of its strength: more is a disturbance"""
@@ -80,9 +80,9 @@ class Parameters:
     """rad, 1 sigma of a first attitude"""
     start_heading: float = radians(40.0)
     """rad, the same"""
-    start_bias: float = radians(1.0)
+    start_bias: float = radians(1.8)
     """rad/s, 1 sigma"""
-    gate: float = 0.2
+    gate: float = 0.1
     """squares of innovations, in variances of one measurement, beyond which they are not likely (001 eq. 6.5)"""
     own_gate: float = 4.0
     """squares of innovations, in variances of the state, that are not held against a measurement"""
@@ -110,34 +110,39 @@ DEFAULT = Parameters()
 MADGWICK = replace(
     DEFAULT,
     force_time=0.9,
-    spread_time=20.0,
-    spread_rise=1.0,
+    spread_time=13.0,
+    spread_rise=0.7,
     tilt_noise=radians(0.055),
-    shake_noise=0.056,
-    field_noise=radians(0.4),
+    shake_noise=0.031,
+    excess_noise=1.8,
+    field_noise=radians(0.33),
     start_bias=radians(0.5),
-    gate=1.0,
-    angle_noise=radians(0.03),
-    bias_walk=radians(0.002),
+    gate=0.7,
+    angle_noise=radians(0.055),
+    bias_walk=radians(0.0025),
 )
-"""Its two angles know nothing of each other, so that more is left to chance."""
 LINEAR = replace(
     DEFAULT,
     force_time=0.2,
-    spread_time=15.0,
     tilt_noise=radians(0.05),
     shake_noise=0.06,
+    excess_noise=1.5,
+    gate=0.2,
+    start_bias=radians(1.0),
     angle_noise=radians(0.015),
 )
 QUEST_EKF = replace(
     DEFAULT,
     force_time=0.85,
-    tilt_noise=radians(0.35),
-    shake_noise=0.09,
-    excess_noise=3.0,
-    field_noise=radians(0.15),
-    rate_noise=radians(0.04),
+    spread_time=13.0,
+    spread_rise=0.3,
+    tilt_noise=radians(0.23),
+    shake_noise=0.06,
+    excess_noise=6.0,
+    field_noise=radians(0.12),
     start_heading=radians(20.0),
+    start_bias=radians(1.5),
+    gate=0.13,
 )
 
 
