@@ -53,11 +53,11 @@ def angles(found: Floats, log: MargLog) -> tuple[Floats, Floats]:
     return tilt, (heading + np.pi) % (2 * np.pi) - np.pi
 
 
-def error(find: Callable[[MargLog], Floats], logs: Iterable[MargLog]) -> Error:
-    """Error of what finds attitudes (N, 4) in logs."""
+def error(find: Callable[[MargLog], Floats], logs: Iterable[MargLog], since: float = SETTLED) -> Error:
+    """Error of what finds attitudes (N, 4) in logs, from `since` (s) on."""
     squares = []
     for log in logs:
-        settled = log.samples.t >= SETTLED
+        settled = log.samples.t >= since
         squares.append([np.mean(angle[settled] ** 2) for angle in angles(find(log), log)])
     tilt, heading = np.degrees(np.sqrt(np.mean(squares, axis=0)))
     return Error(float(tilt), float(heading))

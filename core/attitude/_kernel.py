@@ -30,35 +30,38 @@ SCRATCH = (20, 7)
 """Shape of the memory for what is in between."""
 
 STATE = np.dtype(
-    [
-        ("t", "f8"),  # s of the last sample, nan before the first
-        ("started", "?"),  # whether there is an attitude
-        ("compass", "?"),  # whether heading is that of the magnetic field
-        ("settling", "?"),  # whether it was shaken ever since, so that averages tell more than the filter knows
-        ("age", "f8"),  # s since the attitude was found
-        ("rate_age", "f8"),  # s since the last reading of the gyroscope
-        ("pending", "f8"),  # s since the last correction
-        ("q", "f8", (4,)),  # q_ns
-        ("turned", "f8", (4,)),  # rotation since the last correction
-        ("angles", "f8", (3,)),  # rad, roll, pitch, yaw of the linear filter
-        ("rate", "f8", (3,)),  # rad/s, last reading of the gyroscope
-        ("filtered_rate", "f8", (3,)),  # rad/s, state of (64), bias taken out
-        ("rate_variance", "f8"),  # (rad/s)^2 of the same
-        ("bias", "f8", (3,)),  # rad/s
-        ("covariance", "f8", (7, 7)),  # of quaternion and bias; linear: of roll, pitch and their biases
-        ("force", "f8", (3,)),  # m/s2, first average
-        ("mean_force", "f8", (3,)),  # m/s2, average of the average
-        ("spread", "f8"),  # (m/s2)^2, mean square of the readings about their average
-        ("field", "f8", (3,)),  # uT, average of the readings that were trusted
-        ("field_now", "f8", (3,)),  # uT, average over a moment of all readings
-        ("field_weight", "f8"),  # s, how long readings were averaged
-        ("field_strength", "f8"),  # uT, of the undisturbed field; 0 = not known
-        ("field_dip", "f8"),  # sine of its angle below the horizontal
-        ("field_trust", "f8"),  # s since a reading of the magnetometer was not trusted
-        ("field_doubt", "f8"),  # s for which no reading has been trusted
-        ("sigma", "f8", (3,)),  # rad, of the rotation about east, north, up; nan where the filter has none
-        ("altitude", "f8"),  # m, nan before the first pressure
-    ]
+    (
+        np.record,  # so that the kernel runs uncompiled too
+        [
+            ("t", "f8"),  # s of the last sample, nan before the first
+            ("started", "?"),  # whether there is an attitude
+            ("compass", "?"),  # whether heading is that of the magnetic field
+            ("settling", "?"),  # whether it was shaken ever since, so that averages tell more than the filter knows
+            ("age", "f8"),  # s since the attitude was found
+            ("rate_age", "f8"),  # s since the last reading of the gyroscope
+            ("pending", "f8"),  # s since the last correction
+            ("q", "f8", (4,)),  # q_ns
+            ("turned", "f8", (4,)),  # rotation since the last correction
+            ("angles", "f8", (3,)),  # rad, roll, pitch, yaw of the linear filter
+            ("rate", "f8", (3,)),  # rad/s, last reading of the gyroscope
+            ("filtered_rate", "f8", (3,)),  # rad/s, state of (64), bias taken out
+            ("rate_variance", "f8"),  # (rad/s)^2 of the same
+            ("bias", "f8", (3,)),  # rad/s
+            ("covariance", "f8", (7, 7)),  # of quaternion and bias; linear: of roll, pitch and their biases
+            ("force", "f8", (3,)),  # m/s2, first average
+            ("mean_force", "f8", (3,)),  # m/s2, average of the average
+            ("spread", "f8"),  # (m/s2)^2, mean square of the readings about their average
+            ("field", "f8", (3,)),  # uT, average of the readings that were trusted
+            ("field_now", "f8", (3,)),  # uT, average over a moment of all readings
+            ("field_weight", "f8"),  # s, how long readings were averaged
+            ("field_strength", "f8"),  # uT, of the undisturbed field; 0 = not known
+            ("field_dip", "f8"),  # sine of its angle below the horizontal
+            ("field_trust", "f8"),  # s since a reading of the magnetometer was not trusted
+            ("field_doubt", "f8"),  # s for which no reading has been trusted
+            ("sigma", "f8", (3,)),  # rad, of the rotation about east, north, up; nan where the filter has none
+            ("altitude", "f8"),  # m, nan before the first pressure
+        ],
+    )
 )
 
 # --- vectors and quaternions
@@ -213,7 +216,7 @@ def start(method, p, s, f, m, scratch):
 
 @njit(cache=True, nogil=True)
 def place(method, p, s, m, scratch):
-    """Put the attitude where the averaged force and the field, if it is a reading, say; that of before counts no more."""
+    """Put the attitude where the averaged force and the field, if it is a reading, say, whatever it was before."""
     level, north, f = scratch[0], scratch[1], s.mean_force
     roll, pitch = math.atan2(f[1], f[2]), math.atan2(-f[0], math.hypot(f[1], f[2]))
     yaw = s.angles[2]  # after a gap that of before
@@ -699,7 +702,9 @@ def madgwick(p, s, scratch, force, usable, seen):
             variance, square = tilt_variance(p, s, force), error[0] * error[0] + error[1] * error[1]
         else:
             variance, square = heading_variance(p, s), error[2] * error[2]
-            variance += s.covariance[0, 0] * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)  # as it turns
+            variance += (
+                s.covariance[0, 0] * s.field_dip * s.field_dip / (1.0 - s.field_dip * s.field_dip)
+            )  # as it turns
         measure_angle(p, s, i, variance, square, gain, scratch[5])
         innovation = error[i] - step[i]
         wanted, most = abs(gain[i] * innovation), p.beta * s.pending

@@ -150,7 +150,7 @@ QUEST_EKF = replace(
 def as_record(params: Parameters) -> NDArray[np.void]:
     """Give the parameters as a structured array of shape (1,) for the kernel."""
     values = [(item.name, getattr(params, item.name)) for item in fields(params)]
-    record = np.zeros(1, np.dtype([(name, "f8") for name, _ in values]))
+    record = np.zeros(1, np.dtype((np.record, [(name, "f8") for name, _ in values])))
     for name, value in values:
         record[name] = value
     return record

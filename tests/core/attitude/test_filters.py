@@ -55,6 +55,7 @@ def assert_sound(found: Attitudes) -> None:
     assert np.isfinite(found.gyro_bias).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", FILTERS)
 @pytest.mark.parametrize("disturbed", [False, True])
 def test_pieces_give_what_the_whole_gives(name: str, disturbed: bool) -> None:
@@ -71,6 +72,7 @@ def test_pieces_give_what_the_whole_gives(name: str, disturbed: bool) -> None:
         np.testing.assert_array_equal(np.concatenate(pieces), column)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", COMPASSED)
 @pytest.mark.parametrize("motion", ["level", "walk", "brisk", "violent"])
 def test_the_attitude_is_found(name: str, motion: str) -> None:
@@ -138,6 +140,7 @@ def test_without_magnetometer_the_tilt_is_found_all_the_same(name: str) -> None:
     assert rms(tilt) < 1.3
 
 
+@pytest.mark.compiled
 def test_rows_without_a_field_are_as_no_magnetometer() -> None:
     log = log_of("walk", magnetometer=False)
     rows = replace(log.samples, m_s=np.full((len(log.samples), 3), np.nan))
@@ -145,6 +148,7 @@ def test_rows_without_a_field_are_as_no_magnetometer() -> None:
         np.testing.assert_array_equal(FILTERS[name].run(rows)[1].q_ns, FILTERS[name].run(log.samples)[1].q_ns)
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", FILTERS)
 def test_nothing_makes_it_lose_a_rotation(name: str) -> None:
     """Gaps, repeated times, missing and absurd readings, free fall, in a log that is otherwise sound."""
@@ -193,6 +197,7 @@ def test_a_vertical_field_gives_no_heading(name: str) -> None:
     assert np.degrees(quaternion.angle_between(found.q_ns, [1.0, 0.0, 0.0, 0.0])).max() < 1e-3
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", COMPASSED)
 def test_another_field_is_believed_after_a_while(name: str) -> None:
     """A device that is carried into another place: heading holds, then goes over to the field that is there."""
@@ -207,6 +212,7 @@ def test_another_field_is_believed_after_a_while(name: str) -> None:
     assert not found.field_trusted[2100 : 2000 + patience - 100].any()
 
 
+@pytest.mark.compiled
 def test_the_gyroscope_alone_drifts_as_in_figure_12_and_the_filters_do_not() -> None:
     """003 fig. 12: at rest, 0.07 deg/s of bias over 150 s is 10 deg."""
     log = simulate(MargScenario("rest", 150.0, gyro_bias=np.radians(0.07 / np.sqrt(3))))
