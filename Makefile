@@ -51,7 +51,7 @@ check: lint  ## lint, types and unit tests in under 3 minutes
 lock:  ## pin what pyproject.toml allows
 	uv pip compile -q pyproject.toml --extra dev --extra otel --extra plot --extra video --universal --python-version 3.11 --no-header --no-annotate -o requirements.lock
 
-# The kernel is compiled, so its coverage is seen by running it uncompiled, beside the browser tests.
+# The kernels are compiled, so their coverage is seen by running them uncompiled, beside the browser tests.
 test: setup  ## everything
 	tools/install-test-servers
 	$(MAKE) lint
@@ -59,7 +59,9 @@ test: setup  ## everything
 	pytest -q tests/core -n 2 --cov=core --cov-report=
 	pytest -m browser & browser=$$!; \
 	NUMBA_DISABLE_JIT=1 pytest -q -m "not compiled" --cov=core --cov-append --cov-fail-under=95 --cov-report=term-missing \
-		tests/core/test_estimator.py tests/core/test_jacobians.py tests/core/test_filter_twin.py; core=$$?; \
+		tests/core/test_estimator.py tests/core/test_jacobians.py tests/core/test_filter_twin.py \
+		tests/core/attitude/test_filters.py tests/core/attitude/test_kernel.py tests/core/motion/test_bicycle.py tests/core/motion/test_events.py \
+		tests/core/motion/test_kinematic.py tests/core/motion/test_rivals.py tests/core/motion/test_short_drives.py; core=$$?; \
 	wait $$browser && exit $$core
 	pytest -m "not browser" --ignore tests/core -n 3
 

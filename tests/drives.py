@@ -3,18 +3,13 @@
 How long a calibration takes is the estimator's matter: the drives are cut where it reports what the tests wait for.
 """
 
-import math
 from functools import cache
 from typing import NamedTuple
-
-import numpy as np
 
 import core
 from api.formats.writer import write_native_csv
 from core import EventKind, Samples, quaternion
 from core.simulation import Scenario, simulate
-from core.simulation_events import Crash, crash
-from core.simulation_motion import GRAVITY
 
 CHUNK_SECONDS = 30
 RATE = 50.0
@@ -52,22 +47,6 @@ def remounted(seed: int = 2) -> Story:
     confirmed, anew = _chunks_of(samples, EventKind.CONFIRMED)[:2]
     moved = _chunks_of(samples, EventKind.ORIENTATION_CHANGED)[0]
     return _cut(samples, anew + 1, confirmed, moved, anew)
-
-
-CRASH = Crash(0.0, math.radians(40.0), 12 * GRAVITY, 0.09)
-"""from the front left"""
-CRASHED_AFTER = 45.0
-"""s after the mounting was confirmed"""
-
-
-@cache
-def crashed(seed: int = 2) -> Story:
-    """Town driving until the mounting is confirmed; soon after it the vehicle is hit, and a chunk later all is over."""
-    drive = simulate(_scenario(seed, PLAIN_SECONDS))
-    confirmed = _chunks_of(drive.samples, EventKind.CONFIRMED)[0]
-    hit = CRASH._replace(t=(confirmed + 1) * CHUNK_SECONDS + CRASHED_AFTER)
-    samples = crash(drive, hit, np.random.default_rng(seed))
-    return _cut(samples, int(hit.t // CHUNK_SECONDS) + 2, confirmed, -1, -1)
 
 
 def _scenario(seed: int, seconds: float, remount: tuple[float, object] | None = None) -> Scenario:

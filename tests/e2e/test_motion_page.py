@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from api.formats import parse
-from tests import drives
+from tests import crashes, drives
 from tests.e2e.visitor import Visitor
 from tests.service import ADMIN_KEY, Api, Device
 
@@ -26,7 +26,7 @@ def crashed(address: str) -> Iterator[Device]:
         for known in admin.get("/devices", params={"limit": 500})["items"]:
             admin.call("DELETE", f"/devices/{known['id']}", 204)
         device = admin.add_device("van-7", name="Van 7")
-        device.send_all(drives.crashed().chunks)
+        device.send_all(crashes.crashed().chunks)
         admin.add_device("van-8").send_all(drives.chunks()[:1])
         yield device
 
