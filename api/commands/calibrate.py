@@ -8,9 +8,9 @@ import numpy as np
 import typer
 
 from api.commands import output
-from api.formats import FormatError
-from api.formats.files import Format, open_log
-from core import CalibrationError, Samples
+from api.commands.logs import read
+from api.formats.files import Format
+from core import CalibrationError
 from core.accelerometer import AccelerometerCalibration, apply
 from core.accelerometer_calibration import PARAMETERS, Fit, fit
 from core.poses import AXES, Pose, find_poses
@@ -33,7 +33,7 @@ def run(logs: list[Path], log_format: Format | None, as_json: bool, out: Path | 
     out
         file for the setting of the device, None = none is written
     """
-    recordings = [_read(path, log_format) for path in logs]
+    recordings = [read(path, log_format) for path in logs]
     poses = find_poses(recordings)
     try:
         found = fit(poses)
@@ -47,17 +47,6 @@ def run(logs: list[Path], log_format: Format | None, as_json: bool, out: Path | 
         _print(poses, found)
     if out is not None:
         _write(out, found)
-
-
-def _read(path: Path, log_format: Format | None) -> Samples:
-    try:
-        log = open_log(path, log_format).parse()
-    except OSError as error:
-        output.fail(f"{path}: {error.strerror or error}", output.UNREADABLE)
-    except FormatError as error:
-        sentences = [str(problem) for problem in error.problems] or [error.detail]
-        output.fail("\n".join(f"{path}: {sentence}" for sentence in sentences), output.UNREADABLE)
-    return log.samples().samples
 
 
 def _print(poses: list[Pose], found: Fit) -> None:

@@ -14,10 +14,10 @@ import typer
 from numpy.typing import NDArray
 
 import core
-from api.commands import output
+from api.commands import logs, output
 from api.commands.motion_summary import Summary
-from api.formats import FormatError, Sense
-from api.formats.files import Format, open_log
+from api.formats import Sense
+from api.formats.files import Format
 from api.services import presenting
 from core import Samples, quaternion
 from core.motion import (
@@ -82,7 +82,7 @@ def run(
         file for a picture, None = none
     """
     car, given = _vehicle(vehicle), None if mount is None else _given(mount)
-    samples = _read(log, log_format, course)
+    samples = logs.read(log, log_format, course)
     mounting = Mounting(given, "given", 0.0) if given is not None else _found(log, samples)
     params = replace(DEFAULT, latency=min(max(mounting.latency if latency is None else latency, 0.0), 1.0))
     summary, drawn = Summary(params.rate), list[Motion]()
@@ -126,19 +126,6 @@ def _given(text: str) -> Floats:
     if len(numbers) != 3 or not np.isfinite(numbers).all():
         raise typer.BadParameter(f"expected 3 numbers separated by commas, found {text!r}", param_hint="--mount")
     return quaternion.from_angles(*np.radians(numbers[::-1]))
-
-
-def _read(path: Path, log_format: Format | None, course: Sense) -> Samples:
-    try:
-        log = open_log(path, log_format).parse(course)
-    except OSError as error:
-        output.fail(f"{path}: {error.strerror or error}", output.UNREADABLE)
-    except FormatError as error:
-        sentences = [str(problem) for problem in error.problems] or [error.detail]
-        output.fail("\n".join(f"{path}: {sentence}" for sentence in sentences), output.UNREADABLE)
-    for notice in log.notices:
-        output.complain(f"{path}: {notice}")
-    return log.samples().samples
 
 
 def _found(path: Path, samples: Samples) -> Mounting:

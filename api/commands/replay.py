@@ -12,9 +12,10 @@ import typer
 
 import core
 from api.commands import output
+from api.commands.logs import read_with_counts, sentences
 from api.commands.output import ANGLES
 from api.formats import FormatError, Reading, Sense
-from api.formats.files import Format, open_log
+from api.formats.files import Format
 from api.services import presenting
 from core import PRESETS, Event, Outcome, Parameters, Samples, Status
 
@@ -60,9 +61,9 @@ def run(logs: list[Path], log_format: Format | None, preset: str, every: float, 
     results: list[Result] = []
     for path in logs:
         try:
-            reading = _read(path, log_format, course)
+            reading = read_with_counts(path, log_format, course)
         except (FormatError, OSError) as error:
-            _explain(path, error)
+            output.complain("\n".join(sentences(path, error)))
             continue
         results.append(_replay(path, reading, params, _print_json if as_json else _print_nothing))
         if as_json:
@@ -72,22 +73,6 @@ def run(logs: list[Path], log_format: Format | None, preset: str, every: float, 
         _print_rejected(results)
     if len(results) < len(logs):
         raise typer.Exit(output.UNREADABLE)
-
-
-def _read(path: Path, log_format: Format | None, course: Sense) -> Reading:
-    log = open_log(path, log_format).parse(course)
-    for notice in log.notices:
-        output.complain(f"{path}: {notice}")
-    return log.samples()
-
-
-def _explain(path: Path, error: FormatError | OSError) -> None:
-    """Say which file cannot be read, where, and what was expected."""
-    if isinstance(error, OSError):
-        output.complain(f"{path}: {error.strerror or error}")
-    else:
-        for sentence in [str(problem) for problem in error.problems] or [error.detail]:
-            output.complain(f"{path}: {sentence}")
 
 
 def _replay(path: Path, reading: Reading, params: Parameters, show: Callable[[Outcome], None]) -> Result:

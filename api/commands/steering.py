@@ -4,14 +4,14 @@ import json
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import numpy as np
 import typer
 
-from api.commands import output
+from api.commands import logs, output, plots
 from api.formats import FormatError
-from api.formats.files import Format, open_log
+from api.formats.files import Format
 from api.formats.video import MarkerFilm, is_film, read_markers
 from api.formats.writer import write_native_csv
 from core import Samples
@@ -77,22 +77,8 @@ def _check(film: bool, options: Options) -> None:
         raise typer.BadParameter("a film needs the log the steering angle is added to", param_hint="--log")
 
 
-def _read(path: Path, log_format: Format | None) -> Samples:
-    try:
-        return open_log(path, log_format).parse().samples().samples
-    except (OSError, FormatError) as error:
-        _refuse(path, error)
-
-
-def _refuse(path: Path, error: OSError | FormatError) -> NoReturn:
-    if isinstance(error, OSError):
-        output.fail(f"{path}: {error.strerror or error}", output.UNREADABLE)
-    sentences = [str(problem) for problem in error.problems] or [error.detail]
-    output.fail("\n".join(f"{path}: {sentence}" for sentence in sentences), output.UNREADABLE)
-
-
 def _from_logs(source: Path, options: Options) -> _Found:
-    car, wheel = (_read(path, options.log_format) for path in (source, options.wheel) if path is not None)
+    car, wheel = (logs.read(path, options.log_format) for path in (source, options.wheel) if path is not None)
     found = two_devices(car, wheel, straight=options.straight)
     facts = {
         "method": "two_devices",
@@ -106,7 +92,7 @@ def _from_logs(source: Path, options: Options) -> _Found:
 
 
 def _from_film(source: Path, options: Options) -> _Found:
-    samples = None if options.log is None else _read(options.log, options.log_format)
+    samples = None if options.log is None else logs.read(options.log, options.log_format)
     film = _read_film(source, options.colour)
     found = from_markers(film.t, film.points, from_behind=options.from_behind, straight=options.straight)
     steering, start = found.steering, options.video_start
@@ -129,7 +115,7 @@ def _read_film(source: Path, colour: str | None) -> MarkerFilm:
             return read_markers(source, colour, seen=lambda t, total: bar.update(task, completed=t, total=total))
         except (OSError, FormatError) as error:
             bar.stop()
-            _refuse(source, error)
+            logs.refuse(source, error)
 
 
 def _rows(steering: Steering, every: float) -> list[int]:
@@ -198,18 +184,12 @@ def _write_log(out: Path, found: _Found) -> None:
 
 
 def _plot(out: Path, steering: Steering) -> None:
-    try:
-        from matplotlib.figure import Figure  # noqa: PLC0415 -- an extra
-    except ImportError:
-        output.fail("--plot needs matplotlib: pip install 'livella[plot]'", output.UNREADABLE)
-    figure = Figure(figsize=(10, 4), layout="constrained")
+    figure = plots.new_figure(out)
+    figure.set_size_inches(10.0, 4.0)
     axes = figure.add_subplot(xlabel="t, s", ylabel="steering-wheel angle, ° to the left")
     angle, sigma = np.degrees(steering.angle), np.degrees(steering.sigma)
     axes.fill_between(steering.t, angle - 2 * sigma, angle + 2 * sigma, alpha=0.3, label="2 sigma")
     axes.plot(steering.t, angle, linewidth=0.9)
     axes.grid(alpha=0.3)
     axes.legend()
-    try:
-        figure.savefig(out)
-    except (OSError, ValueError) as error:
-        output.fail(f"{out}: {error}", output.UNREADABLE)
+    plots.save(figure, out)
