@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any, TypeVar
 
+import orjson
 import sqlalchemy as sa
 from sqlalchemy import event
 from sqlalchemy.engine import Connection, CursorResult, Engine, make_url
@@ -129,6 +130,14 @@ class Database:
             self._group.close()
 
 
+def _as_json(value: Any) -> str:
+    return orjson.dumps(value).decode()
+
+
+_JSON: dict[str, Any] = {"json_serializer": _as_json, "json_deserializer": orjson.loads}
+"""Several times as quick as Python's own: every upload reads and writes half a dozen documents."""
+
+
 @contextmanager
 def _write_session(transaction: AbstractContextManager[Connection]) -> Iterator[WriteSession]:
     with transaction as connection:
@@ -138,7 +147,7 @@ def _write_session(transaction: AbstractContextManager[Connection]) -> Iterator[
 def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:
     def engine(begin: str, pragmas: tuple[str, ...], **pool: Any) -> Engine:
         options = {"timeout": BUSY_TIMEOUT, "check_same_thread": False}
-        made = sa.create_engine(url, connect_args=options, hide_parameters=True, **pool)
+        made = sa.create_engine(url, connect_args=options, hide_parameters=True, **_JSON, **pool)
 
         @event.listens_for(made, "connect")
         def _connect(connection: Any, _record: Any) -> None:
@@ -167,6 +176,7 @@ def _postgresql_engines(url: sa.URL) -> tuple[Engine, Engine]:
         pool_size=10,
         max_overflow=40,
         pool_timeout=BUSY_TIMEOUT,
+        **_JSON,
     )
     _watch_over(engine)
     reads = engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)

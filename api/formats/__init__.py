@@ -1,6 +1,5 @@
 """Log formats: bytes -> samples in SI units and radians, a file for each format. Pure: no clock, no files."""
 
-import hashlib
 from collections.abc import Callable
 from email.message import Message
 from functools import lru_cache
@@ -9,6 +8,7 @@ from api.formats import arrow_stream, native_csv, thesis_log
 from api.formats.compression import FILE_LIMITS, UPLOAD_LIMITS, Limits, decode, sniff_encoding
 from api.formats.course_sense import Sense
 from api.formats.errors import FormatError, Problem
+from api.formats.fingerprint import Fingerprint
 from api.formats.log import Context, ParsedLog, Reading
 
 __all__ = [
@@ -27,11 +27,11 @@ __all__ = [
     "sniff_encoding",
 ]
 
-_Reader = Callable[[bytes, Limits, str, Sense], ParsedLog]
+_Reader = Callable[[bytes, Limits, Fingerprint, Sense], ParsedLog]
 _READERS: dict[str, _Reader] = {
-    native_csv.MEDIA_TYPE: lambda content, limits, digest, _: native_csv.parse(content, limits, digest),
+    native_csv.MEDIA_TYPE: lambda content, limits, fingerprint, _: native_csv.parse(content, limits, fingerprint),
     thesis_log.MEDIA_TYPE: thesis_log.parse,
-    arrow_stream.MEDIA_TYPE: lambda content, limits, digest, _: arrow_stream.parse(content, limits, digest),
+    arrow_stream.MEDIA_TYPE: lambda content, limits, fingerprint, _: arrow_stream.parse(content, limits, fingerprint),
 }
 MEDIA_TYPES = tuple(_READERS)
 _CHARSETS = ("utf-8", "utf8", "us-ascii")
@@ -63,13 +63,7 @@ def parse(
     media_type = _media_type(content_type)
     sense = _sense(course)
     content = decode(body, content_encoding, limits)
-    return _READERS[media_type](content, limits, _digest(media_type, content), sense)
-
-
-def _digest(media_type: str, content: bytes) -> str:
-    digest = hashlib.sha256(media_type.encode() + b"\0")
-    digest.update(content)
-    return digest.hexdigest()
+    return _READERS[media_type](content, limits, Fingerprint(media_type, content), sense)
 
 
 @lru_cache(maxsize=64)

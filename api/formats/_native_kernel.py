@@ -99,6 +99,21 @@ def pack_fix(values, place, slow, i, fix):
     for k in range(fix.size):
         column = place[LATITUDE + k]
         fix[k] = values[column, i] if column >= 0 else np.nan
+    return take_fix(slow, fix)
+
+
+@njit(cache=True, nogil=True)
+def take_fixes(slow, fixes):
+    """Turn the degrees of fixes (M, 8) into radians; tell whether all are complete and within the ranges."""
+    sound = True
+    for i in range(fixes.shape[0]):
+        sound &= take_fix(slow, fixes[i])
+    return sound
+
+
+@njit(cache=True, nogil=True)
+def take_fix(slow, fix):
+    """Turn the degrees of a fix (8,) into radians; tell whether it is complete and within the ranges."""
     latitude, longitude, _, speed, course, _, speed_error, course_error = fix
     if (
         abs(latitude) > 90.0

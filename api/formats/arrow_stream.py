@@ -11,10 +11,11 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from api.formats import checks
+from api.formats import arrow_quick, checks
 from api.formats.compression import Limits
 from api.formats.delimited import Cell, Columns, Table
 from api.formats.errors import FormatError, Problem, printable
+from api.formats.fingerprint import Fingerprint
 from api.formats.log import ParsedLog
 from api.formats.native import READ, NativeTable, check_names
 
@@ -24,7 +25,7 @@ _HEADER_FIELD, _COMPRESSION_FIELD = 2, 3
 """places of `Message.header` and `RecordBatch.compression` in Arrow's flatbuffer tables"""
 
 
-def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
+def parse(content: bytes, limits: Limits, fingerprint: Fingerprint) -> ParsedLog:
     """Read an Arrow IPC stream.
 
     Raises
@@ -41,9 +42,14 @@ def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
         message = f"expected an Arrow IPC stream: {printable(str(error))}"
         raise FormatError.unreadable(Problem(None, None, "an Arrow IPC stream", message)) from error
     checks.refuse_empty(batches.num_rows, line=1)
+    return ParsedLog(MEDIA_TYPE, fingerprint, notices, batches.num_rows, _sound(batches).read)
+
+
+def _sound(batches: pa.Table) -> NativeTable:
+    if len(pieces := batches.to_batches()) == 1 and (packed := arrow_quick.pack(pieces[0])) is not None:
+        return NativeTable(packed, {})
     table = _table(batches)
-    sound = NativeTable(table, lambda row, column: Cell(row + 1, _shown(table.columns, row, column)))
-    return ParsedLog(MEDIA_TYPE, digest, notices, table.rows, sound.read)
+    return NativeTable.of(table, lambda row, column: Cell(row + 1, _shown(table.columns, row, column)))
 
 
 def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, tuple[str, ...]]:

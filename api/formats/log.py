@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from api.formats.fingerprint import Fingerprint
 from core import Samples
 
 Context = dict[str, Any]
@@ -25,8 +26,7 @@ class ParsedLog:
     """A log that has been read and found sound; nothing of it can be refused any more."""
 
     media_type: str
-    digest: str
-    """SHA-256, hexadecimal, of the media type and the decoded content: the same log compressed otherwise is the same"""
+    fingerprint: Fingerprint
     notices: tuple[str, ...]
     """what the sender should know, such as columns that were ignored"""
     rows: int

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from difflib import get_close_matches
-from typing import Final
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 
 from api.formats import _native_kernel, checks
 from api.formats.checks import Fault, Locate, Rows
-from api.formats.delimited import Columns, Table
+from api.formats.delimited import Columns, Floats, Table
 from api.formats.errors import FormatError, Problem, printable
 from api.formats.log import Context, Reading
 from api.formats.reports import make_samples, without_fix
@@ -30,6 +30,8 @@ READ = (*TIME, *ACCELERATION, *RATE, "fix", *GPS, *FIELD, *OTHERS)
 
 MAX_COLUMNS: Final = 100
 MAX_NAME: Final = 60
+UNITS: Final = {"t": 1.0, "t_ms": 1e-3}
+"""s, of the columns that may tell the time"""
 SLOW: Final = 1.0
 """m/s; below it a receiver may leave the course empty"""
 
@@ -101,11 +103,54 @@ def _known_name(name: str) -> str | None:
     return next(iter(get_close_matches(plain, READ, 1, cutoff=0.65)), None)
 
 
-class NativeTable:
-    """The columns of one chunk, checked."""
+class Packed(NamedTuple):
+    """What is sound of a chunk and goes to the estimator, SI units and radians: N samples, M fixes."""
 
-    def __init__(self, table: Table, locate: Locate) -> None:
-        """Check the columns and convert them to SI units.
+    t: Floats
+    """(N,)"""
+    f_s: Floats
+    """(N, 3)"""
+    w_s: Floats | None
+    """(N, 3)"""
+    fix_rows: Rows
+    """(M,)"""
+    none_rows: Rows
+    """rows on which the receiver says that it has no fix"""
+    fix: Floats
+    """(M, 8)"""
+
+
+def _time(names: Sequence[str]) -> str:
+    return "t" if "t" in names else "t_ms"
+
+
+def _pack(table: Table) -> Packed | None:
+    """Give the columns as samples are made of them; None when any rule is broken."""
+    n, has_rates, time = table.rows, "gx" in table.names, _time(table.names)
+    place = [table.names.index(name) if name in table.names else -1 for name in (time, *_PACKED)]
+    t, f_s = np.empty(n), np.empty((n, 3))
+    w_s = np.empty((n, 3)) if has_rates else None
+    fix_rows, none_rows, fix = np.empty(n, np.int64), np.empty(n, np.int64), np.empty((n, len(GPS)))
+    fixes, nones = _native_kernel.pack(
+        table.values, np.array(place), UNITS[time], SLOW, t, f_s, f_s if w_s is None else w_s, fix_rows, none_rows, fix
+    )
+    if fixes < 0:
+        return None
+    # copies: what was set aside for the rows that there might have been is given back
+    return Packed(t, f_s, w_s, fix_rows[:fixes].copy(), none_rows[:nones].copy(), fix[:fixes].copy())
+
+
+class NativeTable:
+    """The columns of one chunk, checked, in SI units and radians."""
+
+    def __init__(self, packed: Packed, others: Columns) -> None:
+        self._packed = packed
+        self._m_s = np.stack([others[name] for name in FIELD], axis=-1) if FIELD[0] in others else None
+        self._others = [others.get(name) for name in OTHERS]
+
+    @classmethod
+    def of(cls, table: Table, locate: Locate) -> Self:
+        """Check columns and convert them.
 
         Parameters
         ----------
@@ -119,41 +164,17 @@ class NativeTable:
         FormatError
             422 with line, column and what was expected
         """
-        time = "t" if "t" in table.names else "t_ms"
-        n, has_rates = table.rows, "gx" in table.names
-        place = [table.names.index(name) if name in table.names else -1 for name in (time, *_PACKED)]
-        self._t, self._f_s = np.empty(n), np.empty((n, 3))
-        self._w_s = np.empty((n, 3)) if has_rates else None
-        fix_rows, none_rows, fix = np.empty(n, np.int64), np.empty(n, np.int64), np.empty((n, len(GPS)))
-        fixes, nones = _native_kernel.pack(
-            table.values,
-            np.array(place),
-            1.0 if time == "t" else 1e-3,
-            SLOW,
-            self._t,
-            self._f_s,
-            self._f_s if self._w_s is None else self._w_s,
-            fix_rows,
-            none_rows,
-            fix,
-        )
+        packed = _pack(table)
         others = {name: table.columns[name] for name in (*FIELD, *OTHERS) if name in table.names}
-        if fixes < 0 or not _sound(others):
-            checks.refuse(_faults(table.columns, time), locate)
+        if packed is None or not _sound(others):
+            checks.refuse(_faults(table.columns, _time(table.names)), locate)
             raise AssertionError("a sound chunk was found to be none")
-        # copies: what was set aside for the rows that there might have been is given back
-        self._fix_rows, self._none_rows, self._fix = (
-            fix_rows[:fixes].copy(),
-            none_rows[:nones].copy(),
-            fix[:fixes].copy(),
-        )
-        self._m_s = np.stack([others[name] for name in FIELD], axis=-1) if FIELD[0] in others else None
-        self._others = [others.get(name) for name in OTHERS]
+        return cls(packed, others)
 
     def read(self, context: Context) -> Reading:
         """Give the samples; `context` keeps the time of the last fix."""
-        none_rows = without_fix(self._t, self._fix_rows, self._none_rows, context)
-        samples = make_samples(self._t, self._f_s, self._w_s, self._fix_rows, self._fix, none_rows)
+        t, f_s, w_s, fix_rows, none_rows, fix = self._packed
+        samples = make_samples(t, f_s, w_s, fix_rows, fix, without_fix(t, fix_rows, none_rows, context))
         if self._m_s is not None or any(column is not None for column in self._others):
             steer, temperature, pressure = self._others
             samples = replace(samples, m_s=self._m_s, steer=steer, temperature=temperature, pressure=pressure)

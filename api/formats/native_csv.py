@@ -6,13 +6,14 @@ from api.formats import checks
 from api.formats.compression import Limits
 from api.formats.delimited import DelimitedText, is_numbers, lines, text_content
 from api.formats.errors import FormatError, Problem
+from api.formats.fingerprint import Fingerprint
 from api.formats.log import ParsedLog
 from api.formats.native import READ, NativeTable, check_names
 
 MEDIA_TYPE = "text/csv"
 
 
-def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
+def parse(content: bytes, limits: Limits, fingerprint: Fingerprint) -> ParsedLog:
     """Read a native CSV log.
 
     Raises
@@ -27,7 +28,7 @@ def parse(content: bytes, limits: Limits, digest: str) -> ParsedLog:
     table = text.read(tuple(name for name in names if name in READ))
     checks.refuse_empty(table.rows, line=2)
     checks.refuse_rows(table.rows, limits)
-    return ParsedLog(MEDIA_TYPE, digest, notices, table.rows, NativeTable(table, text.cell).read)
+    return ParsedLog(MEDIA_TYPE, fingerprint, notices, table.rows, NativeTable.of(table, text.cell).read)
 
 
 def _names(header: bytes) -> tuple[str, ...]:

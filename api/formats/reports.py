@@ -51,11 +51,12 @@ def _thin(t: Floats, rows: Rows, due: float) -> Rows:
 
 
 def make_samples(t: Floats, f_s: Floats, w_s: Floats | None, fix_rows: Rows, fix: Floats, none_rows: Rows) -> Samples:
-    """Put fixes and reports without a fix into one table in the order of their rows."""
+    """Put fixes and reports without a fix into one table in the order of their rows; all are known to be sound."""
+    w_s = np.full((t.size, 3), np.nan) if w_s is None else w_s
     if not none_rows.size:
-        return Samples.make(t, f_s, w_s, fix_rows, np.ones(fix_rows.size, np.bool_), fix)
+        return Samples(t, f_s, w_s, fix_rows, np.ones(fix_rows.size, np.bool_), fix)
     rows = np.concatenate([fix_rows, none_rows])
     order = np.argsort(rows, kind="stable")
     valid = np.arange(rows.size) < fix_rows.size
     table = np.concatenate([fix, np.full((none_rows.size, fix.shape[1]), np.nan)])
-    return Samples.make(t, f_s, w_s, rows[order], valid[order], table[order])
+    return Samples(t, f_s, w_s, rows[order], valid[order], table[order])

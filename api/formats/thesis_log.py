@@ -15,6 +15,7 @@ from api.formats.checks import Fault, Locate, Rows
 from api.formats.compression import Limits
 from api.formats.course_sense import Sense
 from api.formats.delimited import Columns, DelimitedText, Floats, lines, text_content
+from api.formats.fingerprint import Fingerprint
 from api.formats.log import Context, ParsedLog, Reading
 from api.formats.reports import make_samples, without_fix
 from core import FIX_COLUMNS
@@ -38,7 +39,7 @@ INTERVALS: Final = 15
 """intervals, seen while driving, whose median is the receiver's usual one"""
 
 
-def parse(content: bytes, limits: Limits, digest: str, course: Sense) -> ParsedLog:
+def parse(content: bytes, limits: Limits, fingerprint: Fingerprint, course: Sense) -> ParsedLog:
     """Read a thesis log.
 
     Raises
@@ -54,7 +55,7 @@ def parse(content: bytes, limits: Limits, digest: str, course: Sense) -> ParsedL
     columns = text.read(COLUMNS).columns
     checks.refuse_rows(columns[TIME].size, limits)
     table = ThesisTable(columns, text.cell)
-    return ParsedLog(MEDIA_TYPE, digest, (), table.rows, partial(table.read, course))
+    return ParsedLog(MEDIA_TYPE, fingerprint, (), table.rows, partial(table.read, course))
 
 
 def _delimiter(line: bytes) -> str:

@@ -78,7 +78,7 @@ def read(context: Context, body: Body) -> ParsedLog:
 
 def same(known: Receipt, parsed: ParsedLog) -> Receipt:
     """Give the receipt of a chunk that comes once more, if it is the same one."""
-    if known.digest != parsed.digest:
+    if not parsed.fingerprint.matches(known.digest):
         raise ChunkConflictError(f"Chunk {known.seq} of this session came in before, with other content.")
     return known
 
@@ -87,7 +87,7 @@ def take(calibration: Calibration, session: Session, chunk: Chunk, parsed: Parse
     """Take in a new chunk: apply it, and what waited for it, if it is its turn; else let it wait."""
     _refuse_late(calibration, session, chunk.seq)
     reading = _read(calibration, session, parsed)
-    receipt = _receipt(calibration, session, chunk, parsed.digest, reading)
+    receipt = _receipt(calibration, session, chunk, parsed.fingerprint.digest, reading)
     if chunk.seq == session.next_seq:
         _enter(calibration, session)
         receipt = _apply(calibration, session, receipt, reading)

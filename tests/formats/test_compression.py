@@ -39,8 +39,10 @@ def test_zeros_after_the_end_are_padding() -> None:
 
 def test_the_same_content_is_the_same_chunk_however_it_is_compressed() -> None:
     plain = parse(CSV, "text/csv", None)
-    assert {parse(compress(CSV, e), "text/csv", e).digest for e in ("gzip", "zstd")} == {plain.digest}
-    assert parse(CSV + b"0.1,0,0,9.8,,,\n", "text/csv", None).digest != plain.digest
+    assert {parse(compress(CSV, e), "text/csv", e).fingerprint.digest for e in ("gzip", "zstd")} == {
+        plain.fingerprint.digest
+    }
+    assert parse(CSV + b"0.1,0,0,9.8,,,\n", "text/csv", None).fingerprint.digest != plain.fingerprint.digest
 
 
 @pytest.mark.parametrize("encoding", ["gzip", "zstd"])

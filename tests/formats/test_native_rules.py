@@ -44,7 +44,7 @@ def chunks(draw: st.DrawFn) -> Table:
 
 def read(table: Table) -> Samples | None:
     try:
-        return NativeTable(table, lambda row, column: Cell(row + 2, column)).read({}).samples
+        return NativeTable.of(table, lambda row, column: Cell(row + 2, column)).read({}).samples
     except FormatError:
         return None
 

@@ -1,0 +1,96 @@
+"""The short way of an Arrow batch against the long one."""
+
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from api.formats import arrow_quick, arrow_stream, native
+from api.formats.delimited import Table
+from api.formats.native import GPS, VELOCITY, Packed
+from tests.formats.test_native_rules import chunks, sound_columns
+
+WHOLE = frozenset({0.0, 1.0})
+SOUND = sound_columns({*GPS, *VELOCITY})
+SOUND_TABLE = Table(tuple(SOUND), np.array(list(SOUND.values())))
+
+
+def batch(table: Table, kind: pa.DataType, milliseconds: bool = False) -> pa.RecordBatch:
+    """Give columns as a device sends them: nan as null, in whole numbers what can be."""
+    columns = {name: pa.array(values, from_pandas=True).cast(kind) for name, values in table.columns.items()}
+    fix = table.columns["fix"]
+    if WHOLE.issuperset(fix[~np.isnan(fix)].tolist()):
+        columns["fix"] = columns["fix"].cast(pa.int8())
+    if milliseconds:
+        columns["t_ms"] = pa.array(np.nan_to_num(columns.pop("t").to_numpy(zero_copy_only=False) * 1e3), pa.float64())
+    return pa.RecordBatch.from_pydict(columns)
+
+
+def the_long_way(sent: pa.RecordBatch) -> Packed | None:
+    return native._pack(arrow_stream._table(pa.Table.from_batches([sent])))
+
+
+def assert_same(quick: Packed, long: Packed | None) -> None:
+    assert long is not None
+    for got, expected in zip(quick, long, strict=True):
+        assert (got is None) == (expected is None)
+        if got is not None and expected is not None:
+            assert (got.dtype, got.flags.c_contiguous) == (expected.dtype, expected.flags.c_contiguous)
+            np.testing.assert_array_equal(got, expected)
+
+
+@settings(max_examples=1500, deadline=None)
+@given(chunks(), st.sampled_from([pa.float32(), pa.float64()]), st.booleans())
+@example(SOUND_TABLE, pa.float64(), False)
+def test_both_ways_give_the_same(table: Table, kind: pa.DataType, milliseconds: bool) -> None:
+    sent = batch(table, kind, milliseconds)
+    quick = arrow_quick.pack(sent)
+    if quick is not None:
+        assert_same(quick, the_long_way(sent))
+    else:
+        assert the_long_way(sent) is None or any(np.isnan(table.columns[name]).any() for name in table.names)
+
+
+@pytest.mark.parametrize("optional", [{*VELOCITY}, {*GPS}, {*GPS, "gx", "gy", "gz"}])
+@pytest.mark.parametrize("kind", [pa.float32(), pa.float64()])
+def test_what_devices_usually_send_goes_the_short_way(optional: set[str], kind: pa.DataType) -> None:
+    columns = sound_columns(optional)
+    for name in GPS:
+        if name in columns:
+            columns[name][1:3] = np.nan
+    quick = arrow_quick.pack(batch(Table(tuple(columns), np.array(list(columns.values()))), kind))
+    assert quick is not None
+    assert quick.fix_rows.tolist() == [0, 3]
+    assert quick.none_rows.tolist() == [1]
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("ax", [0.25, None, 0.25, 0.25]),
+        ("ax", [0.25, np.inf, 0.25, 0.25]),
+        ("t", [0.0, 0.5, 0.25, 1.0]),
+        ("t", [0.0, np.nan, 0.25, 1.0]),
+        ("t", [0.0, 0.25, 0.5, np.inf]),
+        ("fix", [1, 2, None, 1]),
+        ("fix", [1.0, 0.0, None, 1.0]),
+        ("lat", [91.0, None, None, 1.0]),
+        ("lat", [1.0, np.inf, None, 1.0]),
+        ("mx", [0.0, 0.0, 0.0, 0.0]),
+        ("alt", [True, None, None, False]),
+    ],
+)
+def test_what_is_odd_is_left_to_the_long_way(name: str, values: list[Any]) -> None:
+    sent = batch(SOUND_TABLE, pa.float64()).to_pydict() | {"fix": pa.array([1, 0, None, 1], pa.int8())}
+    odd = pa.RecordBatch.from_pydict(sent | {name: pa.array(values, from_pandas=False)})
+    assert arrow_quick.pack(odd) is None
+
+
+def test_a_part_of_a_larger_batch() -> None:
+    sent = batch(SOUND_TABLE, pa.float32()).slice(1, 3)
+    quick = arrow_quick.pack(sent)
+    assert quick is not None
+    assert_same(quick, the_long_way(sent))
