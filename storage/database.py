@@ -18,7 +18,7 @@ from sqlalchemy.engine import Connection, CursorResult, Engine, make_url
 from storage import prepared
 from storage.file_lock import FileLock
 from storage.group_commit import GroupCommit
-from storage.prepared import Prepared
+from storage.prepared import Prepared, Run
 
 T = TypeVar("T")
 
@@ -34,12 +34,17 @@ class ReadSession:
     """One consistent look at the database."""
 
     def __init__(self, connection: Connection) -> None:
-        self.connection = connection
+        self._connection = connection
+
+    @property
+    def connection(self) -> Connection:
+        """The connection, for what is not done here."""
+        return self._connection
 
     @property
     def is_postgresql(self) -> bool:
         """True on PostgreSQL, False on SQLite."""
-        return self.connection.dialect.name == "postgresql"
+        return self._connection.dialect.name == "postgresql"
 
     def one(self, make: Callable[..., T], statement: sa.Executable | Prepared, **values: Any) -> T | None:
         """Give the first row as `make(*row)`, or None; `values` are those of the statement's parameters."""
@@ -62,13 +67,35 @@ class ReadSession:
 class WriteSession(ReadSession):
     """A transaction that may write; everything in it becomes durable together, or nothing does."""
 
+    def __init__(self, connection: Connection) -> None:
+        super().__init__(connection)
+        self._later: dict[sa.FromClause | None, Run] = {}
+        """what is still to be run, by table"""
+        self.others = 0
+        """statements other than the prepared ones that have changed something"""
+
+    @property
+    def connection(self) -> Connection:
+        """The connection, on which everything has been run."""
+        self.run_all()
+        return self._connection
+
     def execute(self, statement: sa.Executable, **values: Any) -> CursorResult[Any]:
         """Run an INSERT, UPDATE or DELETE."""
+        self.others += 1
         return self.connection.execute(statement, values)
 
     def run(self, statement: Prepared, **values: Any) -> None:
-        """Run a prepared INSERT or UPDATE."""
-        statement.rows(self.connection, values)
+        """Run a prepared INSERT or UPDATE before anything else is asked for or changed, or at the end."""
+        if statement.table in self._later:
+            self.run_all()
+        self._later[statement.table] = statement, values
+
+    def run_all(self) -> None:
+        """Run what is still to be run."""
+        if self._later:
+            runs, self._later = list(self._later.values()), {}
+            prepared.run_all(self._connection, runs)
 
 
 class Database:
@@ -141,7 +168,8 @@ _JSON: dict[str, Any] = {"json_serializer": _as_json, "json_deserializer": orjso
 @contextmanager
 def _write_session(transaction: AbstractContextManager[Connection]) -> Iterator[WriteSession]:
     with transaction as connection:
-        yield WriteSession(connection)
+        yield (tx := WriteSession(connection))
+        tx.run_all()
 
 
 def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:

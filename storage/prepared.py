@@ -4,6 +4,7 @@ SQLAlchemy looks up, checks and wraps for every execution, several times as long
 its key. A prepared statement keeps the text and the types' converters that SQLAlchemy made for it; errors are its own.
 """
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
@@ -52,14 +53,55 @@ class Prepared:
 
     def __init__(self, statement: sa.Select[Any] | sa.Insert | sa.Update) -> None:
         self.statement = statement
+        self.table = None if isinstance(statement, sa.Select) else statement.table
+        """that an INSERT or UPDATE changes"""
         self._translated: dict[tuple[str, ...], _Translated] = {}
 
     def rows(self, connection: Connection, values: dict[str, Any]) -> Sequence[Sequence[Any]]:
         """Run it in the connection's transaction and give the rows, if it gives any."""
+        form = self.translated(connection, values)
+        return [form.shape(row) for row in execute(connection, form.sql, form.bind(values))]
+
+    def translated(self, connection: Connection, values: dict[str, Any]) -> _Translated:
+        """Give it as the driver takes it with these values."""
         form = self._translated.get(key := (connection.dialect.name, *values))
         if form is None:
             form = self._translated[key] = _translate(self.statement, connection.dialect, tuple(values))
-        return [form.shape(row) for row in execute(connection, form.sql, form.bind(values))]
+        return form
+
+
+Run = tuple[Prepared, dict[str, Any]]
+"""A statement to be run, with its values."""
+_combined: dict[tuple[str, ...], str] = {}
+"""texts of statements that go together, by those of each"""
+_PARAMETER = re.compile(r"%\((\w+)\)s")
+
+
+def run_all(connection: Connection, runs: Sequence[Run]) -> None:
+    """Run INSERTs and UPDATEs of a row each, of which no two have the same table.
+
+    PostgreSQL gets them as one statement: a way there and back costs more than to insert a row.
+    """
+    if connection.dialect.name != "postgresql" or len(runs) < 2:
+        for statement, values in runs:
+            statement.rows(connection, values)
+        return
+    texts: list[str] = []
+    bound: dict[str, Any] = {}
+    for place, (statement, values) in enumerate(runs):
+        form = statement.translated(connection, values)
+        texts.append(form.sql)
+        bound |= {f"{name}_{place}": value for name, value in dict(form.bind(values)).items()}
+    execute(connection, _combine(tuple(texts)), bound)
+
+
+def _combine(texts: tuple[str, ...]) -> str:
+    """Give one statement for several; the last of them is the main one."""
+    if texts not in _combined:
+        own = [_PARAMETER.sub(rf"%(\1_{place})s", text) for place, text in enumerate(texts)]
+        parts = ", ".join(f"part_{place} AS ({text})" for place, text in enumerate(own[:-1]))
+        _combined[texts] = f"WITH {parts} {own[-1]}"
+    return _combined[texts]
 
 
 def execute(connection: Connection, sql: str, parameters: _Parameters = ()) -> list[Any]:

@@ -27,11 +27,12 @@ from api.services.errors import UNKNOWN_DEVICE, NotFoundError, NotStillError, Un
 from api.services.foresight import Beginning, Foresight, advance, detect
 from api.services.speed_trace import Trace
 from core.motion.events import MotionEvent
-from storage import installations, motion_events, mounts
+from storage import installations, motion_events, mounts, sessions, standing
 from storage.database import WriteSession
-from storage.installations import Installation
+from storage.installations import Beside, Installation
 from storage.mounts import Mount
 from storage.sessions import Session
+from storage.standing import Standing
 
 log = logging.getLogger(__name__)
 
@@ -54,6 +55,10 @@ class Calibration:
         self.row = row
         self.now = context.clock()
         self.foresight: Foresight | None = None
+        self._standing: Standing | None = None
+        """what was read of the device at the beginning; None: nothing, or it may have changed"""
+        self._others = 0
+        """of the transaction, when that was read"""
         self._state: core.State | None = None
         self._shown: schemas.Installation | None = None
 
@@ -64,6 +69,42 @@ class Calibration:
         if row is None:
             raise NotFoundError(UNKNOWN_DEVICE)
         return cls(tx, context, device_id, row)
+
+    def find_session(self, name: str) -> Session:
+        """Find a session, a new one if need be, and read what else an upload has to know of its device."""
+        found = standing.find(self.tx, self.row.device_pk, name)
+        self._standing, self._others = found, self.tx.others
+        session = None if found is None else found.session
+        return session or sessions.find_or_add(self.tx, self.row.device_pk, name, self.now)
+
+    def look_anew(self) -> None:
+        """What was read at the beginning holds no longer."""
+        self._standing = None
+
+    @property
+    def _known(self) -> Standing | None:
+        """What was read at the beginning; None once anything else than the rows of every upload was written."""
+        return self._standing if self.tx.others == self._others else None
+
+    @property
+    def nothing_waits(self) -> bool:
+        """True when it is known that no chunk waits."""
+        known = self._known
+        return known is not None and not known.waits
+
+    def _mount(self) -> Mount | None:
+        """Give the mounting in force, or the suspect one."""
+        known = self._known
+        return mounts.current(self.tx, self.row.device_pk) if known is None else known.beside.mount
+
+    def _beside(self) -> Beside:
+        known, since = self._known, self.row.since_session_pk
+        if known is None or known.session is None:
+            return installations.beside(self.tx, self.row)
+        if since is None:
+            return known.beside._replace(since_started_at=None)
+        is_current = since == known.session.pk  # else it is the one that it was
+        return known.beside._replace(since_started_at=known.session.started_at) if is_current else known.beside
 
     @property
     def state(self) -> core.State:
@@ -150,12 +191,14 @@ class Calibration:
         self._state = state
         began = received_at - timedelta(seconds=t_last)
         started_at = min(session.started_at or began, began)
+        if started_at != session.started_at:
+            self.look_anew()
         if session.started_at is not None and started_at < session.started_at:
             motion_events.move(self.tx, session.pk, session.started_at - started_at)
         session = session._replace(started_at=started_at)
         lag = self.now - started_at - timedelta(seconds=t_last)
         metrics.LAG.observe(max(lag.total_seconds(), 0.0))
-        mount = mounts.current(self.tx, self.row.device_pk)
+        mount = self._mount()
         self._record(session, reading, outcome, received_at)
         happened = self._detect(session, seq, reading.samples, outcome, mount)
         self._watch(session, reading.samples, outcome, happened, received_at)
@@ -265,7 +308,7 @@ class Calibration:
     def shown(self) -> schemas.Installation:
         """Give the installation resource."""
         if self._shown is None:
-            self._shown = publishing.show(self.tx, self.row, self.device_id, self.context.params)
+            self._shown = presenting.installation(self.row, self.device_id, self._beside(), self.context.params)
         return self._shown
 
 

@@ -17,7 +17,7 @@ from api.formats.log import Reading
 from api.services import detecting
 from api.services.context import Context
 from api.services.detecting import Detection
-from storage import installations, mounts, sessions
+from storage import installations, standing
 from storage.database import ReadSession
 from storage.installations import Installation
 from storage.mounts import Mount
@@ -78,10 +78,10 @@ def look_up(tx: ReadSession, device_id: str, session: str, seq: int) -> Stand | 
     row = installations.find(tx, device_id)
     if row is None:
         return None
-    found = sessions.find(tx, row.device_pk, session)
-    if seq != (0 if found is None else found.next_seq):
+    found = standing.find(tx, row.device_pk, session)
+    if found is None or seq != (0 if found.session is None else found.session.next_seq):
         return None
-    return Stand(row, found, mounts.current(tx, row.device_pk))
+    return Stand(row, found.session, found.beside.mount)
 
 
 def foresee(context: Context, stand: Stand, parsed: ParsedLog) -> Foresight | None:

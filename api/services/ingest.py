@@ -56,7 +56,7 @@ def apply(
     """
     calibration = Calibration.open(tx, context, device_id)
     calibration.foresight = foresight
-    session = sessions.find_or_add(tx, calibration.row.device_pk, chunk.session, calibration.now)
+    session = calibration.find_session(chunk.session)
     # one whose turn it is cannot have come in before: it would have been applied
     known = None if chunk.seq == session.next_seq else chunks.find(tx, session.pk, chunk.seq)
     if known is None:
@@ -95,6 +95,7 @@ def take(calibration: Calibration, session: Session, chunk: Chunk, parsed: Parse
         catch_up(calibration)
         return receipt
     chunks.add(calibration.tx, receipt, chunk.body)
+    calibration.look_anew()
     catch_up(calibration)  # it may be the one too many that declares the gap
     return chunks.find(calibration.tx, session.pk, chunk.seq) or receipt
 
@@ -116,6 +117,8 @@ def catch_up(calibration: Calibration) -> None:
 
 
 def _sessions_waiting(calibration: Calibration) -> list[int]:
+    if calibration.nothing_waits:
+        return []
     return chunks.sessions_waiting(calibration.tx, calibration.row.device_pk, calibration.row.session_pk)
 
 

@@ -22,6 +22,7 @@ from storage import (
     raw_chunks,
     retention,
     sessions,
+    standing,
 )
 from storage.database import Database, ReadSession, WriteSession
 from storage.device_lists import Filter, Place
@@ -80,6 +81,7 @@ LOOKS: dict[str, Callable[[WriteSession], object]] = {
     "a suspect mounting": lambda tx: mounts.suspects(tx, 1),
     "counts of a device's alerts": lambda tx: alerts.counts(tx, 1),
     "beside an installation": lambda tx: installations.beside(tx, INSTALLATION),
+    "what an upload has to know": lambda tx: standing.find(tx, 1, "a"),
     "extent of history": lambda tx: estimates.extent(tx, 1, PERIOD),
     "all history": lambda tx: estimates.blocks(tx, 1, PERIOD, None),
     "some history": lambda tx: estimates.blocks(tx, 1, PERIOD, 60.0),
@@ -122,6 +124,7 @@ def look(tables: Database, query: Callable[[WriteSession], object]) -> list[str]
             tx.connection.exec_driver_sql("SET LOCAL enable_seqscan = off")  # tables are empty: it is what can be done
         with statements(tx.connection) as ran:
             query(tx)
+            tx.run_all()
         steps = [step for statement in ran if not statement[0].startswith("INSERT") for step in explain(tx, statement)]
     assert steps
     return steps
