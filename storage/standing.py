@@ -1,6 +1,7 @@
 """What an upload has to know of its device beside the installation, read at once: each look is a way to the server."""
 
-from typing import Any, NamedTuple
+from datetime import datetime
+from typing import Any, NamedTuple, Self
 
 import sqlalchemy as sa
 
@@ -28,9 +29,29 @@ class Standing(NamedTuple):
 
     session: Session | None
     """the one with the name that was asked for; None: it is new"""
-    beside: Beside
     waits: bool
     """True when any chunk waits in the current session or a later one"""
+    since_started_at: datetime | None
+    """zero of the clock of the session in which the stage began"""
+    open_alerts: int
+    mount: Mount | None
+    """the one in force, or the suspect one"""
+    mount_session_pk: int | None
+    """the session whose clock tells when that was confirmed"""
+
+    def as_begun(self, session: Session) -> Self:
+        """Give what it is when it is known better when its session began."""
+        mount = self.mount
+        if mount is not None and session.started_at is not None and self.mount_session_pk == session.pk:
+            mount = mount._replace(started_at=session.started_at)
+        return self._replace(session=session, mount=mount)
+
+    def beside(self, since_session_pk: int | None) -> Beside:
+        """Give what is shown with the installation, whose stage began in the session that it did, or in this one."""
+        since = self.since_started_at if since_session_pk is not None else None
+        if self.session is not None and since_session_pk == self.session.pk:
+            since = self.session.started_at
+        return Beside(since, self.open_alerts, self.mount)
 
 
 _named, _since, _of_mount, _other = (sessions.alias(name) for name in ("named", "since", "of_mount", "other"))
@@ -46,6 +67,7 @@ _find = Prepared(
         _waits.label("waits"),
         _since.c.started_at.label("since_started_at"),
         sa.select(sa.func.count()).where(alerts.c.device_id == devices.c.id, alert_unresolved).scalar_subquery(),
+        mounts.c.session_pk.label("mount_session_pk"),
         *_mount,
     )
     .select_from(
@@ -66,7 +88,12 @@ def find(tx: ReadSession, device_pk: int, session: str) -> Standing | None:
 
 
 def _standing(*row: Any) -> Standing:
-    session, (waits, since_started_at, open_alerts, *mount) = row[:_SESSION], row[_SESSION:]
-    found = None if mount[0] is None else Mount(*mount)
-    beside = Beside(since_started_at, open_alerts, found)
-    return Standing(None if session[0] is None else Session(*session), beside, bool(waits))
+    session, (waits, since_started_at, open_alerts, mount_session_pk, *mount) = row[:_SESSION], row[_SESSION:]
+    return Standing(
+        None if session[0] is None else Session(*session),
+        bool(waits),
+        since_started_at,
+        open_alerts,
+        None if mount_session_pk is None else Mount(*mount),
+        mount_session_pk,
+    )

@@ -95,16 +95,11 @@ class Calibration:
     def _mount(self) -> Mount | None:
         """Give the mounting in force, or the suspect one."""
         known = self._known
-        return mounts.current(self.tx, self.row.device_pk) if known is None else known.beside.mount
+        return mounts.current(self.tx, self.row.device_pk) if known is None else known.mount
 
     def _beside(self) -> Beside:
-        known, since = self._known, self.row.since_session_pk
-        if known is None or known.session is None:
-            return installations.beside(self.tx, self.row)
-        if since is None:
-            return known.beside._replace(since_started_at=None)
-        is_current = since == known.session.pk  # else it is the one that it was
-        return known.beside._replace(since_started_at=known.session.started_at) if is_current else known.beside
+        known = self._known
+        return installations.beside(self.tx, self.row) if known is None else known.beside(self.row.since_session_pk)
 
     @property
     def state(self) -> core.State:
@@ -191,11 +186,11 @@ class Calibration:
         self._state = state
         began = received_at - timedelta(seconds=t_last)
         started_at = min(session.started_at or began, began)
-        if started_at != session.started_at:
-            self.look_anew()
         if session.started_at is not None and started_at < session.started_at:
             motion_events.move(self.tx, session.pk, session.started_at - started_at)
         session = session._replace(started_at=started_at)
+        if self._standing is not None:
+            self._standing = self._standing.as_begun(session)
         lag = self.now - started_at - timedelta(seconds=t_last)
         metrics.LAG.observe(max(lag.total_seconds(), 0.0))
         mount = self._mount()

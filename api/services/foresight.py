@@ -81,7 +81,7 @@ def look_up(tx: ReadSession, device_id: str, session: str, seq: int) -> Stand | 
     found = standing.find(tx, row.device_pk, session)
     if found is None or seq != (0 if found.session is None else found.session.next_seq):
         return None
-    return Stand(row, found.session, found.beside.mount)
+    return Stand(row, found.session, found.mount)
 
 
 def foresee(context: Context, stand: Stand, parsed: ParsedLog) -> Foresight | None:

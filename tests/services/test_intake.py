@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
 
+import numpy as np
 import pytest
 import sqlalchemy as sa
 from sqlalchemy import event
@@ -17,6 +18,7 @@ from storage.chunks import Body
 from storage.database import ReadSession
 from storage.models import chunks as chunk_table
 from tests.conftest import Clock
+from tests.crashes import crashed
 from tests.drives import remounted
 
 WHERE: ContextVar[str] = ContextVar("where", default="nowhere")
@@ -177,3 +179,22 @@ def test_keys_are_looked_up_without_a_transaction(context: Context) -> None:
     finally:
         event.remove(sa.Engine, "begin", note)
     assert ran == []
+
+
+def test_every_answer_shows_what_is_stored(context: Context, clock: Clock) -> None:
+    """An upload reads what it shows at its beginning: nothing may change meanwhile without being seen."""
+    waits = np.random.default_rng(1).uniform(
+        20.0, 40.0, 200
+    )  # of chunks of 30 s: sessions begin earlier, as it turns out
+    for seq, body in enumerate(remounted().chunks):
+        outcome = intake.receive(context, "a", ingest.Chunk("s", seq, Body(body, "text/csv", None, "auto")))
+        assert outcome.installation == shown(context, "a"), seq
+        clock.advance(float(waits[seq]))
+    for session, seq in [("t", 1), ("t", 0), ("t", 3), ("u", 0), ("u", 2), ("u", 1), ("v", 1), ("w", 0)]:
+        chunk = ingest.Chunk(session, seq, Body(remounted().chunks[seq], "text/csv", None, "auto"))
+        assert intake.receive(context, "a", chunk).installation == shown(context, "a"), (session, seq)
+        clock.advance(35.0)
+    for seq, body in enumerate(crashed().chunks):
+        outcome = intake.receive(context, "b", ingest.Chunk("s", seq, Body(body, "text/csv", None, "auto")))
+        assert outcome.installation == shown(context, "b"), seq
+        clock.advance(float(waits[seq]))

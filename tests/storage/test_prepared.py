@@ -6,11 +6,13 @@ from typing import Any
 import pytest
 import sqlalchemy as sa
 
-from storage import devices
+from storage import devices, events
 from storage.database import Database
+from storage.events import Position
 from storage.migrate import upgrade
 from storage.models import devices as table
 from storage.prepared import Prepared
+from tests.plans import statements
 
 NOW = datetime(2026, 5, 4, 3, 2, 1, 123456, tzinfo=UTC)
 CALIBRATION = {"gain": [[1.0]], "offset": [0.5]}
@@ -101,3 +103,40 @@ def test_errors_do_not_tell_what_was_sent(database: Database, values: dict[str, 
     with pytest.raises(sa.exc.DBAPIError) as caught:
         add()
     assert "parameters" not in str(caught.value)
+
+
+def test_what_is_run_later_is_there_when_it_is_asked_for(database: Database) -> None:
+    with database.write() as tx:
+        tx.run(ADD, id="a", name="A", created_at=NOW)
+        tx.run(RENAME, of_id="a", name="B")  # the same table: in this order
+        events.add(tx, "a", "device", "{}", NOW)
+        assert tx.value(sa.select(table.c.name)) == "B"
+        tx.run(RENAME, of_id="a", name="C")
+        events.add(tx, "a", "device", '{"C": "50 %"}', NOW)
+    assert rows(database, "a")[0][0] == "a"
+    with database.read() as tx:
+        assert tx.value(sa.select(table.c.name)) == "C"
+        assert [event.data for event in events.after(tx, Position(0, 0))] == ["{}", '{"C": "50 %"}']
+
+
+@pytest.mark.parametrize("backend", ["postgresql"], indirect=True)
+def test_postgresql_gets_rows_of_several_tables_at_once(database: Database) -> None:
+    with database.write() as tx, statements(tx.connection) as ran:
+        tx.run(ADD, id="a", name="A", created_at=NOW)
+        events.add(tx, "a", "device", "{}", NOW)
+        tx.run_all()
+    ((text, _),) = ran
+    assert text.startswith("WITH")
+
+
+def test_an_error_of_what_is_run_later_undoes_everything(database: Database) -> None:
+    def add_both() -> None:
+        with database.write() as tx:
+            tx.run(ADD, id="a", name=None, created_at=NOW)
+            events.add(tx, "a", "device", "{}", NOW)
+
+    with pytest.raises(sa.exc.IntegrityError):
+        add_both()
+    assert rows(database, "a") == []
+    with database.read() as tx:
+        assert events.after(tx, Position(0, 0)) == []
