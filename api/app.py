@@ -101,7 +101,6 @@ async def _lifespan(
         print(f"First admin key, shown only once: {first_key}", file=sys.stderr, flush=True)
     ready = threading.Event()
     uploads = open_uploads(context)
-    await hub.start()
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(_warm_up, context, ready, when_ready)
         tasks.start_soon(hub.run)

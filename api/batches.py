@@ -7,7 +7,7 @@ than it gains. A few threads that take what has gathered go through it undisturb
 import asyncio
 import threading
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future
+from contextlib import suppress
 from queue import Empty, SimpleQueue
 from typing import Generic, NamedTuple, TypeVar
 
@@ -17,7 +17,8 @@ Result = TypeVar("Result")
 
 class _Waiting(NamedTuple, Generic[Item, Result]):
     item: Item
-    done: "Future[Result]"
+    done: "asyncio.Future[Result]"
+    loop: asyncio.AbstractEventLoop
 
 
 class Batches(Generic[Item, Result]):
@@ -48,9 +49,10 @@ class Batches(Generic[Item, Result]):
 
     async def do(self, item: Item) -> Result:
         """Wait until an item is worked on and give its result; whoever gives up waiting does not stop the work."""
-        done: Future[Result] = Future()
-        self._queue.put(_Waiting(item, done))
-        return await asyncio.shield(asyncio.wrap_future(done))
+        loop = asyncio.get_running_loop()
+        done: asyncio.Future[Result] = loop.create_future()
+        self._queue.put(_Waiting(item, done, loop))
+        return await done
 
     def close(self) -> None:
         """Finish what is queued, and end the threads."""
@@ -82,8 +84,17 @@ class Batches(Generic[Item, Result]):
             results = self._work([waiting.item for waiting in batch])
         except Exception as error:
             results = [error] * len(batch)
-        for waiting, result in zip(batch, results, strict=True):
-            if isinstance(result, Exception):
-                waiting.done.set_exception(result)
-            else:
-                waiting.done.set_result(result)
+        for loop in {waiting.loop for waiting in batch}:  # it is one, and woken once for all
+            told = [pair for pair in zip(batch, results, strict=True) if pair[0].loop is loop]
+            with suppress(RuntimeError):  # the loop has ended, and nobody waits in it
+                loop.call_soon_threadsafe(_tell, told)
+
+
+def _tell(batch: Sequence[tuple[_Waiting[Item, Result], Result | Exception]]) -> None:
+    for waiting, result in batch:
+        if waiting.done.done():
+            continue  # whoever waited has given up
+        if isinstance(result, Exception):
+            waiting.done.set_exception(result)
+        else:
+            waiting.done.set_result(result)

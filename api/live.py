@@ -1,12 +1,14 @@
 """The live stream inside one process: one task reads the events of the database, every listener follows its memory.
 
 A commit in this process wakes the task at once; commits of other processes are found by looking about once a second.
+While nobody listens nothing is read.
 """
 
 import asyncio
 import logging
 from bisect import bisect_right
 from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 
 from anyio import to_thread
 
@@ -36,32 +38,48 @@ class Hub:
         """everything after this is in `_recent`, as far as it has been read"""
         self._news = asyncio.Event()
         self._wake = asyncio.Event()
+        self._listeners = 0
         self._closed = False
         self._loop: asyncio.AbstractEventLoop | None = None
 
     @property
-    def position(self) -> Position:
-        """Where the stream is now."""
+    def _position(self) -> Position:
         return self._recent[-1].position if self._recent else self._floor
-
-    async def start(self) -> None:
-        """Find out where the stream is; before `run` and before any listener."""
-        self._loop = asyncio.get_running_loop()
-        self._floor = await to_thread.run_sync(self._latest)
 
     async def run(self) -> None:
         """Read events until `close`."""
+        self._loop = asyncio.get_running_loop()
         while not self._closed:
-            try:
-                self._remember(await to_thread.run_sync(self._read, self.position))
-            except Exception:
-                log.exception("the live stream cannot read events")
+            if self._listeners:
+                await self._look()
             await asyncio.sleep(PAUSE)
             await _wait(self._wake, POLL_INTERVAL)
             self._wake.clear()
 
+    async def _look(self) -> None:
+        try:
+            self._remember(await to_thread.run_sync(self._read, self._position))
+        except Exception:
+            log.exception("the live stream cannot read events")
+
+    @asynccontextmanager
+    async def listening(self) -> AsyncIterator[Position]:
+        """Listen inside the block; gives where the stream is now, to `follow` it from there."""
+        now = await to_thread.run_sync(self._latest)
+        if self._listeners == 0:  # what came meanwhile was not read
+            self._recent, self._floor = [], now
+        self._listeners += 1
+        self._wake.set()
+        try:
+            yield now
+        finally:
+            self._listeners -= 1
+
     async def follow(self, position: Position) -> AsyncIterator[list[Event]]:
-        """Give the events after a position in batches as they come, an empty one now and then; ends with `close`."""
+        """Give the events after a position in batches as they come, an empty one now and then; ends with `close`.
+
+        Only while `listening`.
+        """
         while not self._closed:
             news = self._news
             batch = await self._after(position)
@@ -74,14 +92,15 @@ class Hub:
             yield batch
 
     def wake(self) -> None:
-        """Look for events now; from any thread."""
-        self._call(self._wake.set)
+        """Look for events now, if anybody listens; from any thread."""
+        if self._listeners:
+            self._call(self._wake.set)
 
     def close(self) -> None:
         """End every stream; from any thread or a signal handler."""
         self._closed = True
         self._call(self._announce)
-        self.wake()
+        self._call(self._wake.set)
 
     def _call(self, action: object) -> None:
         if self._loop is not None and not self._loop.is_closed():

@@ -88,7 +88,8 @@ def latest(tx: ReadSession) -> Position:
     """Give the position now."""
     if tx.is_postgresql:
         return Position(tx.value(sa.select(_oldest_running)), 0)
-    return Position(0, tx.value(sa.select(sa.func.coalesce(sa.func.max(events.c.pk), 0))))
+    newest = Position(0, tx.value(sa.select(sa.func.coalesce(sa.func.max(events.c.pk), 0))))
+    return max(newest, pruned(tx))  # all may have been removed
 
 
 def pruned(tx: ReadSession) -> Position:

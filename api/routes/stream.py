@@ -40,17 +40,18 @@ async def stream(
     if last_event_id and (start is None or await to_thread.run_sync(_is_lost, context, start)):
         start = None
         yield _message(event="reset", data={})
-    start = start or hub.position
-    yield _message(comment="connected", id=str(start), retry=RETRY_MS)
-    checked = time.monotonic()
-    async for batch in hub.follow(start):
-        if time.monotonic() - checked > CHECK_INTERVAL:
-            checked = time.monotonic()
-            if not await to_thread.run_sync(sign_ins.is_valid, context, principal):
-                return
-        for event in batch:
-            if _may_see(principal, event):
-                yield _message(raw_data=event.data, event=event.type, id=str(event.position))
+    async with hub.listening() as now:
+        start = start or now
+        yield _message(comment="connected", id=str(start), retry=RETRY_MS)
+        checked = time.monotonic()
+        async for batch in hub.follow(start):
+            if time.monotonic() - checked > CHECK_INTERVAL:
+                checked = time.monotonic()
+                if not await to_thread.run_sync(sign_ins.is_valid, context, principal):
+                    return
+            for event in batch:
+                if _may_see(principal, event):
+                    yield _message(raw_data=event.data, event=event.type, id=str(event.position))
 
 
 def _message(**fields: Any) -> Any:

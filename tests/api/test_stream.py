@@ -1,7 +1,8 @@
+import asyncio
 import json
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
@@ -10,12 +11,14 @@ from typing import Any, NamedTuple
 import httpx
 import pytest
 
+from api.live import Hub
 from api.services import retention, startup
 from api.services.context import Context, utc_now
 from api.settings import Settings
 from storage import events
 from storage.database import Database
 from storage.events import Position
+from storage.migrate import upgrade
 from tests.conftest import Clock
 from tests.drives import chunks, remounted
 from tests.server import ServerProcess, running
@@ -214,3 +217,60 @@ def test_old_events_are_removed_by_housekeeping(settings: Settings, clock: Clock
         assert left.device_id == "b"
         assert Position(0, 0) < events.pruned(tx) < left.position
     context.database.close()
+
+
+def test_whoever_comes_after_a_quiet_time_hears_what_follows_only(live: Api) -> None:
+    first = Listener(live)
+    live.add_device("a")
+    (told,) = first.wait_for(1)
+    first.leave()
+    live.add_device("b")  # wakes the first, which then leaves
+    assert first.ended.wait(10)
+    live.add_device("c")
+    second, resumed = Listener(live), Listener(live, told.id)
+    live.add_device("d")
+    assert [one.data["device_id"] for one in second.wait_for(1)] == ["d"]
+    assert [one.data["device_id"] for one in resumed.wait_for(3)] == ["b", "c", "d"]
+
+
+async def first(batches: AsyncIterator[list[events.Event]]) -> AsyncIterator[list[events.Event]]:
+    """Give the first batch with anything in it."""
+    async for batch in batches:
+        if batch:
+            yield batch
+            return
+
+
+def test_nothing_is_read_while_nobody_listens(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
+    upgrade(database)
+    monkeypatch.setattr("api.live.POLL_INTERVAL", 0.05)
+    hub, reads = Hub(database), list[Position]()
+    straight = hub._read
+
+    def read(position: Position) -> list[events.Event]:
+        reads.append(position)
+        return straight(position)
+
+    monkeypatch.setattr(hub, "_read", read)
+
+    async def live() -> None:
+        running_hub = asyncio.create_task(hub.run())
+        await asyncio.sleep(0.3)
+        assert reads == []
+        async with hub.listening() as now:
+            await asyncio.to_thread(tell, "heard")
+            hub.wake()
+            heard = [batch async for batch in first(hub.follow(now))]
+            assert [event.device_id for event in heard[0]] == ["heard"]
+        await asyncio.sleep(0.2)
+        count = len(reads)
+        await asyncio.sleep(0.3)
+        assert len(reads) == count
+        hub.close()
+        await running_hub
+
+    def tell(device_id: str) -> None:
+        with database.write() as tx:
+            events.add(tx, device_id, "device", "{}", utc_now())
+
+    asyncio.run(live())
