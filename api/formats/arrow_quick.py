@@ -8,7 +8,6 @@ from typing import Any, Final
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 from numpy.typing import NDArray
 
 from api.formats import _native_kernel
@@ -18,8 +17,6 @@ from api.formats.native import ACCELERATION, FIELD, GPS, OTHERS, RATE, SLOW, TIM
 
 _Columns = dict[str, pa.Array]
 _DENSE: Final = frozenset({*TIME, *ACCELERATION, *RATE})
-_EMPTY: Final = -1
-"""written where `fix` is null"""
 
 
 def pack(batch: pa.RecordBatch) -> Packed | None:
@@ -76,32 +73,33 @@ def _finite(values: Floats) -> bool:
 
 def _flags(column: pa.Array) -> tuple[Rows, Rows] | None:
     """Give the rows with 1 and those with 0; None when there is anything else but null."""
-    said = pc.fill_null(column, _EMPTY if pa.types.is_signed_integer(column.type) else 2).to_numpy()
-    fix_rows, none_rows = np.flatnonzero(said == 1), np.flatnonzero(said == 0)
+    said, filled = _values(column), _filled(column)
+    fix_rows, none_rows = np.flatnonzero((said == 1) & filled), np.flatnonzero((said == 0) & filled)
     return (fix_rows, none_rows) if fix_rows.size + none_rows.size + column.null_count == len(column) else None
 
 
 def _fixes(columns: _Columns, rows: Rows) -> Floats | None:
     """Give the fixes (M, 8), SI units and radians; None when one is not sound, or a number anywhere is infinite."""
     fix = np.full((rows.size, len(GPS)), np.nan)
-    chosen = pa.array(rows)
     for k, name in enumerate(GPS):
         if name in columns:
-            if _may_be_infinite(columns[name]):
+            values = _values(columns[name])
+            if np.isinf(values).any():  # those behind nulls included
                 return None
-            fix[:, k] = columns[name].take(chosen).to_numpy(zero_copy_only=False)
+            fix[:, k] = np.where(_filled(columns[name])[rows], values[rows], np.nan)
     return fix if _native_kernel.take_fixes(SLOW, fix) else None
 
 
-def _may_be_infinite(column: pa.Array) -> bool:
-    """Tell whether an infinite number is among the values, those behind nulls included."""
-    if not pa.types.is_floating(column.type):
-        return False
-    values: NDArray[Any] = np.frombuffer(
-        column.buffers()[1], column.type.to_pandas_dtype(), len(column), _start(column)
-    )
-    return bool(np.isinf(values).any())
+def _values(column: pa.Array) -> NDArray[Any]:
+    """Give the numbers (N,), anything where there is null."""
+    start = column.offset * column.type.bit_width // 8
+    return np.frombuffer(column.buffers()[1], column.type.to_pandas_dtype(), len(column), start)
 
 
-def _start(column: pa.Array) -> int:
-    return int(column.offset * column.type.bit_width // 8)
+def _filled(column: pa.Array) -> NDArray[np.bool_]:
+    """Tell where there is no null, (N,)."""
+    bits = column.buffers()[0]
+    if bits is None:
+        return np.ones(len(column), np.bool_)
+    end = column.offset + len(column)
+    return np.unpackbits(np.frombuffer(bits, np.uint8), count=end, bitorder="little")[column.offset :].view(np.bool_)

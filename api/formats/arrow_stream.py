@@ -36,7 +36,6 @@ def parse(content: bytes, limits: Limits, fingerprint: Fingerprint) -> ParsedLog
     if not content:
         raise FormatError.unreadable(Problem(1, None, "a log", "the log is empty"))
     try:
-        _refuse_compressed_buffers(content)
         batches, notices = _batches(content, limits)
     except (pa.ArrowException, OSError, struct.error, IndexError, UnicodeDecodeError) as error:
         message = f"expected an Arrow IPC stream: {printable(str(error))}"
@@ -53,16 +52,28 @@ def _sound(batches: pa.Table) -> NativeTable:
 
 
 def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, tuple[str, ...]]:
-    with pa.ipc.open_stream(pa.BufferReader(content)) as stream:
-        notices = check_names(stream.schema.names, line=None)
-        _check_types(stream.schema)
-        batches, rows = [], 0
-        for batch in stream:
-            rows += batch.num_rows
-            checks.refuse_rows(rows, limits)
-            batch.validate()
-            batches.append(batch)
-        return pa.Table.from_batches(batches, stream.schema), notices
+    messages = iter(pa.ipc.MessageReader.open_stream(pa.BufferReader(content)))
+    if (first := next(messages, None)) is None:
+        raise pa.ArrowInvalid("there is no schema")
+    schema = pa.ipc.read_schema(first)
+    notices = check_names(tuple(schema.names), line=None)
+    _check_types(schema)
+    batches, rows = [], 0
+    for message in messages:
+        batch = _batch(message, schema)
+        rows += batch.num_rows
+        checks.refuse_rows(rows, limits)
+        batches.append(batch)
+    return pa.Table.from_batches(batches, schema), notices
+
+
+def _batch(message: pa.ipc.Message, schema: pa.Schema) -> pa.RecordBatch:
+    if message.type == "record batch" and _is_compressed(message.metadata.to_pybytes()):
+        expected = "buffers without compression inside the stream; compress the whole body with gzip or zstd"
+        raise FormatError.unreadable(Problem(None, None, expected, f"expected {expected}"))
+    batch = pa.ipc.read_record_batch(message, schema)
+    batch.validate()
+    return batch
 
 
 def _check_types(schema: pa.Schema) -> None:
@@ -91,13 +102,6 @@ def _numbers(column: pa.Array) -> NDArray[Any]:
 def _shown(columns: Columns, row: int, column: str) -> str:
     value = columns[column][row] if column in columns else np.nan
     return "" if np.isnan(value) else f"{value:.12g}"
-
-
-def _refuse_compressed_buffers(content: bytes) -> None:
-    for message in pa.ipc.MessageReader.open_stream(pa.BufferReader(content)):
-        if message.type == "record batch" and _is_compressed(message.metadata.to_pybytes()):
-            expected = "buffers without compression inside the stream; compress the whole body with gzip or zstd"
-            raise FormatError.unreadable(Problem(None, None, expected, f"expected {expected}"))
 
 
 def _is_compressed(metadata: bytes) -> bool:

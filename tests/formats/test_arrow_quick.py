@@ -25,7 +25,8 @@ def batch(table: Table, kind: pa.DataType, milliseconds: bool = False) -> pa.Rec
     if WHOLE.issuperset(fix[~np.isnan(fix)].tolist()):
         columns["fix"] = columns["fix"].cast(pa.int8())
     if milliseconds:
-        columns["t_ms"] = pa.array(np.nan_to_num(columns.pop("t").to_numpy(zero_copy_only=False) * 1e3), pa.float64())
+        seconds = np.nan_to_num(columns.pop("t").to_numpy(zero_copy_only=False).astype(np.float64))
+        columns["t_ms"] = pa.array(1e3 * np.clip(seconds, -1e9, 1e9))
     return pa.RecordBatch.from_pydict(columns)
 
 

@@ -85,7 +85,10 @@ def test_too_many_rows() -> None:
     assert refused(stream(COLUMNS, batches=2), max_rows=5).status == 413
 
 
-@pytest.mark.parametrize("body", [b"", b"\xff\xff\xff\xff", b"t,ax\n1,2\n", b"ARROW1\0\0" + bytes(100), stream()[:200]])
+@pytest.mark.parametrize(
+    "body",
+    [b"", b"\xff\xff\xff\xff", b"\xff" * 4 + bytes(4), b"t,ax\n1,2\n", b"ARROW1\0\0" + bytes(100), stream()[:200]],
+)
 def test_no_stream(body: bytes) -> None:
     assert refused(body).status == 422
 
