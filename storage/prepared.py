@@ -14,6 +14,8 @@ from sqlalchemy.engine import Connection, Dialect
 on_error: list[Callable[[Exception], None]] = []
 """Told of every error, as SQLAlchemy's event `handle_error` tells of those of all other statements."""
 _Convert = Callable[[Any], Any] | None
+_OPTIONS: dict[str, dict[str, Any]] = {"postgresql": {"binary": True}}
+"""of the drivers: PostgreSQL's would write the estimator's state as text otherwise"""
 _FLOAT8 = 701
 """PostgreSQL's number of the only type for whose values SQLAlchemy wants to know what the server calls it"""
 _Parameters = Sequence[Any] | dict[str, Any]
@@ -60,7 +62,8 @@ class Prepared:
     def rows(self, connection: Connection, values: dict[str, Any]) -> Sequence[Sequence[Any]]:
         """Run it in the connection's transaction and give the rows, if it gives any."""
         form = self.translated(connection, values)
-        return [form.shape(row) for row in execute(connection, form.sql, form.bind(values))]
+        found = execute(connection, form.sql, form.bind(values), reads=self.table is None)
+        return [form.shape(row) for row in found]
 
     def translated(self, connection: Connection, values: dict[str, Any]) -> _Translated:
         """Give it as the driver takes it with these values."""
@@ -104,12 +107,12 @@ def _combine(texts: tuple[str, ...]) -> str:
     return _combined[texts]
 
 
-def execute(connection: Connection, sql: str, parameters: _Parameters = ()) -> list[Any]:
-    """Give the driver a statement of the connection's transaction, and the rows that it gives."""
+def execute(connection: Connection, sql: str, parameters: _Parameters = (), reads: bool = False) -> list[Any]:
+    """Give the driver a statement of the connection's transaction, and the rows if it is one that reads."""
     driver: Any = connection.connection.dbapi_connection
     try:
-        cursor = driver.execute(sql, parameters)
-        found: list[Any] = [] if cursor.description is None else cursor.fetchall()
+        cursor = driver.execute(sql, parameters, **_OPTIONS.get(connection.dialect.name, {}))
+        found: list[Any] = cursor.fetchall() if reads else []
     except connection.dialect.loaded_dbapi.Error as error:
         raise _wrapped(connection, sql, error) from error
     return found

@@ -26,9 +26,11 @@ def statements(of: sa.Connection | type[sa.Engine]) -> Iterator[list[Statement]]
         if statement.startswith(EXPLAINED):
             ran.append((statement, values[0] if isinstance(values, list) else values))
 
-    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] | dict[str, Any] = ()) -> list[Any]:
+    def execute(
+        connection: sa.Connection, sql: str, parameters: Sequence[Any] | dict[str, Any] = (), reads: bool = False
+    ) -> list[Any]:
         note(connection, None, sql, parameters if isinstance(parameters, dict) else tuple(parameters))
-        return straight(connection, sql, parameters)
+        return straight(connection, sql, parameters, reads)
 
     straight, prepared.execute = prepared.execute, execute
     event.listen(of, "before_cursor_execute", note)

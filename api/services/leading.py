@@ -7,6 +7,7 @@ held up for longer than its lease: so whatever a leader does has to bear being d
 import os
 import secrets
 import socket
+import threading
 from datetime import datetime, timedelta
 
 from api.services.context import Context
@@ -29,14 +30,17 @@ class Leadership:
         self.name = name
         self.holder = f"{socket.gethostname()[:32]}-{os.getpid()}-{secrets.token_hex(4)}"
         self._taken_at: datetime | None = None
+        self._asking = threading.Lock()
+        """several jobs ask at once, and one that comes second must not forget what the first one took"""
 
     def held(self) -> bool:
         """Tell whether this process leads, taking or renewing the lease where that is due."""
-        now = self.context.clock()
-        if self._taken_at is not None and timedelta(0) <= now - self._taken_at < RENEWAL:
-            return True
-        self._taken_at = now if self._take(now) else None
-        return self._taken_at is not None
+        with self._asking:
+            now = self.context.clock()
+            if self._taken_at is not None and timedelta(0) <= now - self._taken_at < RENEWAL:
+                return True
+            self._taken_at = now if self._take(now) else None
+            return self._taken_at is not None
 
     def _take(self, now: datetime) -> bool:
         latest = now + LEASE + SKEW

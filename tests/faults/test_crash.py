@@ -47,9 +47,11 @@ def crash_at(statement: int) -> Iterator[list[str]]:
         if not connection.get_execution_options().get("postgresql_readonly") and not is_reader(connection):
             count("COMMIT")
 
-    def execute(connection: sa.Connection, sql: str, parameters: Sequence[Any] | dict[str, Any] = ()) -> list[Any]:
+    def execute(
+        connection: sa.Connection, sql: str, parameters: Sequence[Any] | dict[str, Any] = (), reads: bool = False
+    ) -> list[Any]:
         before_execute(connection, None, sql)
-        return straight(connection, sql, parameters)
+        return straight(connection, sql, parameters, reads)
 
     straight, prepared.execute = prepared.execute, execute
     event.listen(sa.Engine, "before_cursor_execute", before_execute)
@@ -100,7 +102,7 @@ def test_a_crash_after_the_commit_is_seen_as_a_duplicate(
     api: Api, database: Database, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     device = api.add_device()
-    monkeypatch.setattr("api.live.Hub._call", lambda *_: 1 / 0)
+    monkeypatch.setattr("api.metrics.Upload.answered", lambda *_: 1 / 0)
     device.send(chunks()[0], 0, expect=500)
     monkeypatch.undo()
     assert device.send(chunks()[0], 0, expect=200).json()["chunk"]["duplicate"]

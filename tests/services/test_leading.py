@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from starlette.testclient import TestClient
@@ -108,3 +109,15 @@ def _holder(database: Database) -> str | None:
     with database.read() as tx:
         found = leases.find(tx, "housekeeping")
     return None if found is None else found.holder
+
+
+def test_jobs_that_ask_at_once_agree(pair: tuple[Leadership, Leadership]) -> None:
+    context = pair[0].context
+    for _ in range(10):
+        leadership = Leadership(context)
+        with ThreadPoolExecutor(5) as threads:
+            held = [threads.submit(leadership.held) for _ in range(5)]
+        assert all(one.result() for one in held)
+        leadership.give_up()
+        with context.database.read() as tx:
+            assert leases.find(tx, "housekeeping") is None
