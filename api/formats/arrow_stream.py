@@ -5,13 +5,15 @@ their size is not known before they are unpacked (compress the body with gzip or
 """
 
 import struct
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
 from api.formats import arrow_quick, checks
+from api.formats.arrow_scale import Scale, Scales
 from api.formats.compression import Limits
 from api.formats.delimited import Cell, Columns, Table
 from api.formats.errors import FormatError, Problem, printable
@@ -23,6 +25,16 @@ MEDIA_TYPE = "application/vnd.apache.arrow.stream"
 
 _HEADER_FIELD, _COMPRESSION_FIELD = 2, 3
 """places of `Message.header` and `RecordBatch.compression` in Arrow's flatbuffer tables"""
+_USUAL_HEAD = 16 * 1024
+"""bytes, longest schema that is remembered"""
+
+
+class _Head(NamedTuple):
+    """What comes before the rows."""
+
+    schema: pa.Schema
+    scales: Scales
+    notices: tuple[str, ...]
 
 
 def parse(content: bytes, limits: Limits, fingerprint: Fingerprint) -> ParsedLog:
@@ -36,35 +48,45 @@ def parse(content: bytes, limits: Limits, fingerprint: Fingerprint) -> ParsedLog
     if not content:
         raise FormatError.unreadable(Problem(1, None, "a log", "the log is empty"))
     try:
-        batches, notices = _batches(content, limits)
+        batches, head = _batches(content, limits)
     except (pa.ArrowException, OSError, struct.error, IndexError, UnicodeDecodeError) as error:
         message = f"expected an Arrow IPC stream: {printable(str(error))}"
         raise FormatError.unreadable(Problem(None, None, "an Arrow IPC stream", message)) from error
     checks.refuse_empty(batches.num_rows, line=1)
-    return ParsedLog(MEDIA_TYPE, fingerprint, notices, batches.num_rows, _sound(batches).read)
+    return ParsedLog(MEDIA_TYPE, fingerprint, head.notices, batches.num_rows, _sound(batches, head.scales).read)
 
 
-def _sound(batches: pa.Table) -> NativeTable:
-    if len(pieces := batches.to_batches()) == 1 and (packed := arrow_quick.pack(pieces[0])) is not None:
+def _sound(batches: pa.Table, scales: Scales) -> NativeTable:
+    if len(pieces := batches.to_batches()) == 1 and (packed := arrow_quick.pack(pieces[0], scales)) is not None:
         return NativeTable(packed, {})
-    table = _table(batches)
+    table = _table(batches, scales)
     return NativeTable.of(table, lambda row, column: Cell(row + 1, _shown(table.columns, row, column)))
 
 
-def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, tuple[str, ...]]:
+def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, _Head]:
     messages = iter(pa.ipc.MessageReader.open_stream(pa.BufferReader(content)))
     if (first := next(messages, None)) is None:
         raise pa.ArrowInvalid("there is no schema")
-    schema = pa.ipc.read_schema(first)
-    notices = check_names(tuple(schema.names), line=None)
-    _check_types(schema)
+    written = first.serialize().to_pybytes()
+    head = _usual_head(written) if len(written) <= _USUAL_HEAD else _head(written)
     batches, rows = [], 0
     for message in messages:
-        batch = _batch(message, schema)
+        batch = _batch(message, head.schema)
         rows += batch.num_rows
         checks.refuse_rows(rows, limits)
         batches.append(batch)
-    return pa.Table.from_batches(batches, schema), notices
+    return pa.Table.from_batches(batches, head.schema), head
+
+
+def _head(written: bytes) -> _Head:
+    """Read and check a schema."""
+    schema = pa.ipc.read_schema(pa.BufferReader(written))
+    notices = check_names(tuple(schema.names), line=None)
+    return _Head(schema, _check_types(schema), notices)
+
+
+_usual_head = lru_cache(maxsize=128)(_head)
+"""Devices with the same firmware send the same."""
 
 
 def _batch(message: pa.ipc.Message, schema: pa.Schema) -> pa.RecordBatch:
@@ -76,19 +98,28 @@ def _batch(message: pa.ipc.Message, schema: pa.Schema) -> pa.RecordBatch:
     return batch
 
 
-def _check_types(schema: pa.Schema) -> None:
-    """Refuse columns other than plain numbers, also the ignored ones: others may hide compressed or nested data."""
+def _check_types(schema: pa.Schema) -> Scales:
+    """Refuse columns other than plain numbers, also the ignored ones: others may hide compressed or nested data.
+
+    Gives the scales of those that have one and are not ignored.
+    """
+    scales: Scales = {}
     for field in schema:
         if not (pa.types.is_integer(field.type) or pa.types.is_floating(field.type) or pa.types.is_boolean(field.type)):
             message = f"expected integers, floating-point numbers or booleans, found {field.type}"
             raise FormatError.unreadable(Problem(None, printable(field.name), "numbers", message))
+        if field.name in READ and (scale := Scale.of(field)) is not None:
+            scales[field.name] = scale
+    return scales
 
 
-def _table(batches: pa.Table) -> Table:
+def _table(batches: pa.Table, scales: Scales) -> Table:
     names = tuple(name for name in batches.column_names if name in READ)
     values = np.empty((len(names), batches.num_rows))
     for row, name in zip(values, names, strict=True):
         row[:] = _numbers(batches[name].combine_chunks())
+        if name in scales:
+            scales[name].values(row, out=row)
     return Table(names, values)
 
 

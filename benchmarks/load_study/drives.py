@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute
 import zstandard
 
 from api.formats import arrow_stream, native_csv
@@ -28,6 +29,13 @@ DURING = 4
 """minutes of the run"""
 CSV, ARROW = "CSV zstd", "Arrow zstd"
 ENCODINGS = (CSV, ARROW)
+
+COUNTED = {
+    **dict.fromkeys(ACCELERATION, (pa.int16(), 4 * 9.80665 / 2**15)),
+    **{"lat": (pa.int32(), 1e-7), "lon": (pa.int32(), 1e-7), "alt": (pa.int32(), 1e-3)},
+    **{"speed": (pa.int32(), 1e-3), "course": (pa.int32(), 1e-5)},
+}
+"""how an accelerometer of +-4 g and a usual receiver count: 16 bit, and the integers of its binary protocol"""
 
 
 class Drive(NamedTuple):
@@ -66,13 +74,22 @@ def encode_all(drives: Sequence[Drive], encoding: str) -> list[list[Body]]:
 
 
 def write_arrow(samples: Samples) -> bytes:
-    """Write samples as an Arrow stream: the columns of the CSV, its numbers rounded the same, as 32-bit floats."""
+    """Write samples as an Arrow stream of what the sensors count, each column with its scale."""
     read = pa.csv.read_csv(BytesIO(write_native_csv(samples)))
-    wide = {"t", "lat", "lon"}
-    types = {name: pa.float64() if name in wide else pa.float32() for name in read.column_names} | {"fix": pa.int8()}
-    table = read.cast(pa.schema([(name, types[name]) for name in read.column_names]))
-    assert set(ACCELERATION) <= set(table.column_names)
+    columns = {name: _counted(read[name], *COUNTED[name]) for name in read.column_names if name in COUNTED}
+    columns |= {"t_ms": _counted(read["t"], pa.int32(), 1e-3), "fix": read["fix"].cast(pa.int8())}
+    assert {"t", "fix", *COUNTED} == set(read.column_names)
+    fields = [pa.field(name, column.type, metadata=_scale(name)) for name, column in columns.items()]
+    table = pa.table(columns, schema=pa.schema(fields))
     out = BytesIO()
     with pa.ipc.new_stream(out, table.schema) as stream:
         stream.write_table(table.combine_chunks())
     return out.getvalue()
+
+
+def _counted(column: pa.ChunkedArray, kind: pa.DataType, scale: float) -> pa.ChunkedArray:
+    return pa.compute.round(pa.compute.divide(column.cast(pa.float64()), scale)).cast(kind)
+
+
+def _scale(name: str) -> dict[str, str] | None:
+    return {"scale_factor": repr(COUNTED[name][1])} if name in COUNTED else None

@@ -18,7 +18,8 @@ How many devices the service holds that send a minute of driving once a minute (
 server processes, database and load generator sharing the machine; made by `make bench-load`. Every device has driven
 for six minutes before and drives on; some mountings are confirmed, others are not. Samples are not
 kept (`LIVELLA_RAW_RETENTION_DAYS=0`; keeping them takes 2 to 4 ms more of the processor a
-chunk). A chunk is due at its own time whatever became of those before it, and its latency counts
+chunk). CSV has decimals, Arrow what the sensors count: 16-bit accelerations, positions in 10⁻⁷ degrees.
+A chunk is due at its own time whatever became of those before it, and its latency counts
 from then. A count is held when 99 % of the answers come
 within {limits}, none is an error or missing, and afterwards every
 acknowledged chunk is found in the database exactly once. The counts wanted are measured for {full:.0f} s; where one is

@@ -9,11 +9,13 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from api.formats import arrow_quick, arrow_stream, native
+from api.formats.arrow_scale import Scale, Scales
 from api.formats.delimited import Table
-from api.formats.native import GPS, VELOCITY, Packed
+from api.formats.native import ACCELERATION, GPS, VELOCITY, Packed
 from tests.formats.test_native_rules import chunks, sound_columns
 
 WHOLE = frozenset({0.0, 1.0})
+NO_SCALES: Scales = {}
 SOUND = sound_columns({*GPS, *VELOCITY})
 SOUND_TABLE = Table(tuple(SOUND), np.array(list(SOUND.values())))
 
@@ -30,8 +32,8 @@ def batch(table: Table, kind: pa.DataType, milliseconds: bool = False) -> pa.Rec
     return pa.RecordBatch.from_pydict(columns)
 
 
-def the_long_way(sent: pa.RecordBatch) -> Packed | None:
-    return native._pack(arrow_stream._table(pa.Table.from_batches([sent])))
+def the_long_way(sent: pa.RecordBatch, scales: Scales = NO_SCALES) -> Packed | None:
+    return native._pack(arrow_stream._table(pa.Table.from_batches([sent]), scales))
 
 
 def assert_same(quick: Packed, long: Packed | None) -> None:
@@ -48,7 +50,7 @@ def assert_same(quick: Packed, long: Packed | None) -> None:
 @example(SOUND_TABLE, pa.float64(), False)
 def test_both_ways_give_the_same(table: Table, kind: pa.DataType, milliseconds: bool) -> None:
     sent = batch(table, kind, milliseconds)
-    quick = arrow_quick.pack(sent)
+    quick = arrow_quick.pack(sent, NO_SCALES)
     if quick is not None:
         assert_same(quick, the_long_way(sent))
     else:
@@ -62,7 +64,7 @@ def test_what_devices_usually_send_goes_the_short_way(optional: set[str], kind: 
     for name in GPS:
         if name in columns:
             columns[name][1:3] = np.nan
-    quick = arrow_quick.pack(batch(Table(tuple(columns), np.array(list(columns.values()))), kind))
+    quick = arrow_quick.pack(batch(Table(tuple(columns), np.array(list(columns.values()))), kind), NO_SCALES)
     assert quick is not None
     assert quick.fix_rows.tolist() == [0, 3]
     assert quick.none_rows.tolist() == [1]
@@ -87,11 +89,49 @@ def test_what_devices_usually_send_goes_the_short_way(optional: set[str], kind: 
 def test_what_is_odd_is_left_to_the_long_way(name: str, values: list[Any]) -> None:
     sent = batch(SOUND_TABLE, pa.float64()).to_pydict() | {"fix": pa.array([1, 0, None, 1], pa.int8())}
     odd = pa.RecordBatch.from_pydict(sent | {name: pa.array(values, from_pandas=False)})
-    assert arrow_quick.pack(odd) is None
+    assert arrow_quick.pack(odd, NO_SCALES) is None
 
 
 def test_a_part_of_a_larger_batch() -> None:
     sent = batch(SOUND_TABLE, pa.float32()).slice(1, 3)
-    quick = arrow_quick.pack(sent)
+    quick = arrow_quick.pack(sent, NO_SCALES)
     assert quick is not None
     assert_same(quick, the_long_way(sent))
+
+
+COUNTS = {
+    "t_ms": (pa.int32(), None),
+    **dict.fromkeys(ACCELERATION, (pa.int16(), Scale(4 * 9.80665 / 32768, 0.0))),
+    **dict.fromkeys(("gx", "gy", "gz"), (pa.int16(), Scale(0.001, -0.5))),
+    "fix": (pa.int8(), None),
+    **dict.fromkeys(("lat", "lon"), (pa.int32(), Scale(1e-7, 0.0))),
+    "alt": (pa.int16(), Scale(0.1, 1000.0)),
+    "speed": (pa.uint16(), Scale(0.01, 0.0)),
+    "course": (pa.uint16(), Scale(0.01, 0.0)),
+}
+"""type and scale of the columns of a device that sends what its sensors count"""
+
+
+def counts(rows: int, rng: np.random.Generator) -> pa.RecordBatch:
+    columns = {"t_ms": pa.array(np.cumsum(rng.integers(0, 9, rows)), pa.int32())}
+    for name, (kind, scale) in COUNTS.items():
+        if scale is not None:
+            values = rng.integers(-30_000 if pa.types.is_signed_integer(kind) else 0, 30_000, rows)
+            columns[name] = pa.array(values, kind, mask=(rng.random(rows) < 0.2) & (name in GPS))
+    columns["fix"] = pa.array(rng.integers(0, 2, rows), pa.int8(), mask=rng.random(rows) < 0.5)
+    return pa.RecordBatch.from_pydict({name: columns[name] for name in COUNTS})
+
+
+@pytest.mark.parametrize("cut", [0, 1, 7, 8, 13])
+def test_counts_with_a_scale_go_the_short_way_and_give_the_same(cut: int) -> None:
+    scales = {name: scale for name, (_, scale) in COUNTS.items() if scale is not None}
+    taken = 0
+    for seed in range(300):
+        sent = counts(20, np.random.default_rng(seed)).slice(cut)
+        quick, long = arrow_quick.pack(sent, scales), the_long_way(sent, scales)
+        if quick is not None:
+            assert_same(quick, long)
+            taken += 1
+        else:
+            assert long is None  # a fix without speed and position
+    assert taken > 30

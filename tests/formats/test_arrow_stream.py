@@ -18,6 +18,8 @@ COLUMNS: dict[str, Any] = {
     "course": [90.0, None, 91.0],
 }
 
+NO_NUMBERS = ["", "nan", "inf", "1e31", "-1e31", "one", "0x10", "1_000", " 1", "1" * 41, "\n"]
+
 
 def stream(columns: dict[str, Any] = COLUMNS, batches: int = 1, **options: Any) -> bytes:
     out, table = BytesIO(), pa.table(columns)
@@ -50,6 +52,72 @@ def test_small_integers_and_floats() -> None:
     samples = read(stream(columns)).samples().samples
     assert samples.t.tolist() == [0, 0.005, 0.01]
     assert samples.f_s[0, 2] == pytest.approx(9.8)
+
+
+def with_metadata(name: str, values: pa.Array, metadata: dict[str, str]) -> bytes:
+    """Give a stream with one column packed as the CF conventions say."""
+    table = pa.table(COLUMNS | {name: values})
+    field = table.schema.field(name).with_metadata(metadata)
+    return stream_of(table.cast(table.schema.set(table.schema.get_field_index(name), field)))
+
+
+def stream_of(table: pa.Table) -> bytes:
+    out = BytesIO()
+    with pa.ipc.new_stream(out, table.schema) as writer:
+        writer.write_table(table)
+    return out.getvalue()
+
+
+def test_counts_stand_for_what_their_scale_says() -> None:
+    counts = pa.array([-2, 0, 30_000], pa.int16())
+    body = with_metadata("az", counts, {"scale_factor": "0.25", "add_offset": "-1e1"})
+    assert read(body).samples().samples.f_s[:, 2].tolist() == [-10.5, -10.0, 7490.0]
+    heights = with_metadata("alt", pa.array([5, None, -5], pa.int8()), {"add_offset": "100"})
+    assert read(heights).samples().samples.fix[:, 2].tolist() == [105.0, 95.0]
+
+
+def test_the_long_way_scales_too() -> None:
+    """Several pieces, and times out of order, are not for the short one."""
+    counts = pa.array([4, 8, 12], pa.int16())
+    table = pa.table(COLUMNS | {"ax": counts})
+    scaled = table.schema.set(1, table.schema.field("ax").with_metadata({"scale_factor": "0.5"}))
+    out = BytesIO()
+    with pa.ipc.new_stream(out, scaled) as writer:
+        writer.write_table(table.slice(0, 2).cast(scaled))
+        writer.write_table(table.slice(2).cast(scaled))
+    assert read(out.getvalue()).samples().samples.f_s[:, 0].tolist() == [2.0, 4.0, 6.0]
+
+
+def test_another_scale_is_another_log() -> None:
+    counts = pa.array([1, 2, 3], pa.int16())
+    first, second = (read(with_metadata("ax", counts, {"scale_factor": text})) for text in ("0.25", "0.5"))
+    assert first.fingerprint.digest != second.fingerprint.digest
+
+
+@pytest.mark.parametrize(
+    ("key", "text"),
+    [
+        *((key, text) for key in ("scale_factor", "add_offset") for text in NO_NUMBERS),
+        *(("scale_factor", text) for text in ("0", "0.0", "-0e5")),
+    ],
+)
+def test_what_is_no_scale_is_refused(key: str, text: str) -> None:
+    problem = refused(with_metadata("ay", pa.array([1, 2, 3], pa.int16()), {key: text})).problems[0]
+    assert problem.column == "ay"
+    assert key in problem.message
+    assert "\n" not in problem.message
+
+
+def test_a_scale_goes_with_integers_only() -> None:
+    problem = refused(with_metadata("ay", pa.array([1.0, 2.0, 3.0]), {"scale_factor": "2"})).problems[0]
+    assert (problem.column, problem.expected) == ("ay", "integers where there is a scale_factor")
+    problem = refused(with_metadata("fix", pa.array([1, 0, 1], pa.int8()), {"scale_factor": "2"})).problems[0]
+    assert (problem.column, problem.expected) == ("fix", "fix without a scale")
+
+
+def test_a_scale_of_an_ignored_column_does_not_matter() -> None:
+    body = with_metadata("other", pa.array([1, 2, 3], pa.int8()), {"scale_factor": "much"})
+    assert "other" in read(body).notices[0]
 
 
 def test_a_bad_cell_is_named_by_its_row() -> None:

@@ -45,6 +45,16 @@ def _arrow_without_position() -> bytes:
     return sink.getvalue()
 
 
+def _arrow_counts() -> bytes:
+    scale = {"scale_factor": "1e-3", "add_offset": "-1"}
+    plain = [pa.field(name, pa.int32()) for name in ("t_ms", "fix", "lat", "lon")]
+    schema = pa.schema([*plain, *(pa.field(name, pa.int16(), metadata=scale) for name in ("ax", "ay", "az", "alt"))])
+    sink = BytesIO()
+    with pa.ipc.new_stream(sink, schema) as writer:
+        writer.write_table(pa.table({name: [1, 0, 1] for name in schema.names}, schema=schema))
+    return sink.getvalue()
+
+
 def _state() -> bytes:
     return snapshot.encode(core.begin_session(core.DEFAULT, core.initial_state(core.DEFAULT)))
 
@@ -80,7 +90,15 @@ SEEDS: dict[str, list[bytes]] = {
         b"\1" + THESIS.replace(b"\t", b";"),
         b"\2" + THESIS.replace(b"\t", b"  "),
     ],
-    "arrow_stream": [b"", _arrow(), _arrow("lz4"), _arrow("zstd"), _arrow()[:-9], _arrow_without_position()],
+    "arrow_stream": [
+        b"",
+        _arrow(),
+        _arrow("lz4"),
+        _arrow("zstd"),
+        _arrow()[:-9],
+        _arrow_without_position(),
+        _arrow_counts(),
+    ],
     "compression": [
         b"",
         _encoded("gzip", gzip.compress(CSV, mtime=0)),
