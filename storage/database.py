@@ -108,7 +108,8 @@ class Database:
         self.is_sqlite = self.url.get_backend_name() == "sqlite"
         self._reads, self._writes = _sqlite_engines(self.url) if self.is_sqlite else _postgresql_engines(self.url)
         # SQLite's driver begins nothing by itself here, see `_sqlite_engines`
-        self._looks = self._reads if self.is_sqlite else self._reads.execution_options(isolation_level="AUTOCOMMIT")
+        # from the engine itself: what was set for the reads would be set once more, after this
+        self._looks = self._reads if self.is_sqlite else self._writes.execution_options(isolation_level="AUTOCOMMIT")
         self._group = GroupCommit(self._writes, FileLock(self.url.database)) if self.is_sqlite else None
 
     @property

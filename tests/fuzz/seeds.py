@@ -51,7 +51,7 @@ def _arrow_counts() -> bytes:
     schema = pa.schema([*plain, *(pa.field(name, pa.int16(), metadata=scale) for name in ("ax", "ay", "az", "alt"))])
     sink = BytesIO()
     with pa.ipc.new_stream(sink, schema) as writer:
-        writer.write_table(pa.table({name: [1, 0, 1] for name in schema.names}, schema=schema))
+        writer.write_table(pa.table({name: [1, 1, 1] for name in schema.names}, schema=schema))
     return sink.getvalue()
 
 

@@ -62,6 +62,13 @@ def test_a_read_session_sees_one_moment(tables: Database) -> None:
         assert devices.exists(tx, "a") is not None
 
 
+def test_a_look_takes_no_transaction(tables: Database) -> None:
+    with tables.look() as tx:
+        assert installations.find(tx, "a") is None
+        add_device(tables)
+        assert installations.find(tx, "a") is not None
+
+
 def test_moments_are_kept_to_the_microsecond(tables: Database) -> None:
     add_device(tables)
     with tables.read() as tx:
