@@ -64,6 +64,17 @@ def test_the_migrations_can_be_undone(empty_url: str) -> None:
     database.close()
 
 
+def test_postgresql_packs_states_by_lz4(postgres: Server) -> None:
+    database = Database(postgres.empty_database())
+    upgrade(database)
+    packed_by = sa.text("SELECT attcompression FROM pg_attribute WHERE attname = 'snapshot'")
+    with database.write() as tx:
+        assert tx.value(packed_by) in ("l", b"l")
+        command.downgrade(config(tx.connection), "0006")
+        assert tx.value(packed_by) in ("", b"", "\0", b"\0")
+    database.close()
+
+
 def test_there_is_one_newest_migration() -> None:
     assert len(ScriptDirectory.from_config(config()).get_heads()) == 1
 
