@@ -23,7 +23,7 @@ BODY: dict[str, Any] = {
     }
 }
 MAX_SEQ = 2**31 - 2
-AT_ONCE = 8
+AT_ONCE_ON_SQLITE, AT_ONCE = 8, 4
 """chunks in a batch: the first of them waits for the last, some 10 ms for each"""
 Uploads = Batches[intake.Arrival, Response]
 Course = Literal["clockwise", "anticlockwise", "auto"]
@@ -61,8 +61,8 @@ async def upload_chunk(
 
 
 def open_uploads(context: Context) -> Uploads:
-    """Start the threads that work on uploads: on SQLite, where one can write, a single one for several at once."""
-    threads, most = (1, AT_ONCE) if context.database.is_sqlite else (context.settings.upload_threads, 1)
+    """Start the threads that work on uploads: on SQLite, where one can write, a single one."""
+    threads, most = (1, AT_ONCE_ON_SQLITE) if context.database.is_sqlite else (context.settings.upload_threads, AT_ONCE)
     return Batches(lambda arrivals: _answers(context, arrivals), threads, most, "uploads")
 
 
