@@ -45,8 +45,10 @@ class Stored(NamedTuple):
 
 
 def open_context(url: str, directory: Path) -> Context:
-    """Open a database and bring it up to date."""
-    settings = Settings(database_url=SecretStr(url), data_dir=directory, admin_key=SecretStr(ADMIN_KEY))
+    """Open a database and bring it up to date; as in the service that is measured, samples are not kept."""
+    settings = Settings(
+        database_url=SecretStr(url), data_dir=directory, admin_key=SecretStr(ADMIN_KEY), raw_retention_days=0
+    )
     context = Context.make(settings)
     startup.prepare(context)
     return context

@@ -50,8 +50,7 @@ STAGE_TEXT = """### Where the CPU of a chunk goes
 
 Median ms of the functions of an upload, called one after the other in one process on SQLite. The last line is what the
 service's processes needed for a chunk in the runs above, with {devices} devices; the one before it is what that
-is more than the functions: HTTP, threads, housekeeping, and that busy cores disturb each other. It is less than
-nothing where chunks that wait together save more, in commits and in what a core has at hand, than all that costs."""
+is more than the functions: HTTP, threads, housekeeping, and that busy cores disturb each other."""
 NAIVE_TEXT = """### Beside a naive stack
 
 `benchmarks/naive.py` is the same upload as one would write it first: FastAPI, pyarrow, `scipy.signal.decimate`, a numpy

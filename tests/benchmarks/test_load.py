@@ -3,12 +3,14 @@
 import math
 import shutil
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from api.formats.writer import write_native_csv
 from benchmarks import naive
+from benchmarks.load_study import fleet, service
 from benchmarks.load_study.cells import CELLS, NAIVE, Cell, why_not
 from benchmarks.load_study.client import Device
 from benchmarks.load_study.drives import ARROW, CHUNK, CSV
@@ -167,6 +169,12 @@ def test_the_page_tells_what_was_met_and_what_was_skipped() -> None:
     assert "| sqlite-csv | 10000 | yes | 60 | 10.0 / 20.0 / 200 / 500 | 0 | 5.00 | 0.00 | 0.56 | 10.0 % |" in text
     assert "| parse | 2.00 |" in text
     assert "| devices held | 10000 | 2000 | ×5.00 |" in text
+
+
+def test_the_stages_are_timed_with_the_settings_of_the_service_under_load(tmp_path: Path) -> None:
+    context = fleet.open_context(f"sqlite:///{tmp_path / 'livella.db'}", tmp_path)
+    context.database.close()
+    assert context.settings.raw_retention_days == float(service.SETTINGS["LIVELLA_RAW_RETENTION_DAYS"])
 
 
 def test_what_the_stages_do_not_explain_is_http_and_the_rest() -> None:
