@@ -105,6 +105,37 @@ MERGED = np.dtype(
 )
 """The longer epoch of the coarse alignment."""
 
+WORK = np.dtype(
+    [
+        ("begin", "f8", (8,)),  # integrals, and the time without gyroscope behind them
+        ("stop", "f8", (8,)),
+        ("velocity", "f8", (2,)),  # speed and course of a fix
+        ("slopes", "f8", (4, 3)),
+        ("k", "f8", (3,)),
+        ("sigma", "f8", (3,)),
+        ("b", "f8", (3, 3)),  # profile matrix
+        ("r_vs", "f8", (3, 3)),
+        ("r_nv", "f8", (3, 3)),
+        ("r_turned", "f8", (3, 3)),
+        ("turn", "f8", (3, 3)),
+        ("bank", "f8", (2, 2)),
+        ("grade", "f8", (2, 2)),
+        ("up", "f8", (3,)),
+        ("partials", "f8", (5, GYRO_BIAS)),
+        ("z", "f8", (MEASUREMENTS,)),  # predicted
+        ("y", "f8", (MEASUREMENTS,)),  # measured
+        ("noise", "f8", (MEASUREMENTS,)),
+        ("h", "f8", (MEASUREMENTS, STATES)),
+        ("dx", "f8", (STATES,)),
+        ("ph", "f8", (STATES,)),
+        ("mean", "f8", (4,)),
+        ("d", "f8", (3,)),
+        ("total", "f8", (3, 3)),
+    ]
+)
+"""Scratch arrays, which mean nothing from one function to the next: allocated here, counting who holds them would take
+a third of the time."""
+
 
 # ---------------------------------------------------------------------------------------------------- rotations
 
@@ -314,12 +345,12 @@ def integral_at(c, t, out):
 
 
 @njit(cache=True, nogil=True)
-def mean_signals(c, start, end, delay, f_s, w_s, scratch):
+def mean_signals(c, start, end, delay, f_s, w_s, w):
     """Mean specific force and angular rate of [start, end] that many seconds ago: False when not covered.
 
     The end is now; for no delay the integral at the fix that began the epoch is known exactly.
     """
-    begin, stop = scratch[0], scratch[1]
+    begin, stop = w["begin"], w["stop"]
     if delay == 0.0 and abs(start - c["fix_t"]) < 1e-9:
         begin[:7] = c["fix_integral"]
         stop[:7] = c["integral"]
@@ -328,27 +359,26 @@ def mean_signals(c, start, end, delay, f_s, w_s, scratch):
     for j in range(3):
         f_s[j] = (stop[j] - begin[j]) / (end - start)
         w_s[j] = (stop[3 + j] - begin[3 + j]) / (end - start)
-    scratch[0, 7] = stop[6] - begin[6]
+    begin[7] = stop[6] - begin[6]
     return True
 
 
 @njit(cache=True, nogil=True)
-def delayed_signals(p, c, delay, e, scratch):
+def delayed_signals(p, c, delay, e, w):
     """Mean signals of the epoch at the latency `delay` and how they change with it; False when not covered."""
     start, end = e["t"] - e["period"], e["t"]
     low, high = max(delay - SLOPE_STEP, 0.0), delay + SLOPE_STEP
     if p["epoch_latency_count"] > 1:
-        f_low, f_high, w_low, w_high = scratch[2][:3], scratch[3][:3], scratch[4][:3], scratch[5][:3]
+        f_low, f_high, w_low, w_high = w["slopes"][0], w["slopes"][1], w["slopes"][2], w["slopes"][3]
         if not (
-            mean_signals(c, start, end, low, f_low, w_low, scratch)
-            and mean_signals(c, start, end, high, f_high, w_high, scratch)
+            mean_signals(c, start, end, low, f_low, w_low, w) and mean_signals(c, start, end, high, f_high, w_high, w)
         ):
             return False
         for i in range(3):
             e["f_slope"][i] = (f_low[i] - f_high[i]) / (high - low)
             e["w_slope"][i] = (w_low[i] - w_high[i]) / (high - low)
-    covered = mean_signals(c, start, end, delay, e["f_s"], e["w_s"], scratch)
-    e["gyro"] = scratch[0, 7] == 0.0 and math.isfinite(p["filter_gyro_noise"])
+    covered = mean_signals(c, start, end, delay, e["f_s"], e["w_s"], w)
+    e["gyro"] = w["begin"][7] == 0.0 and math.isfinite(p["filter_gyro_noise"])
     return covered
 
 
@@ -463,11 +493,11 @@ def describe_epoch(p, c, e, t, speed, course, fix):
 
 
 @njit(cache=True, nogil=True)
-def take_fix(p, c, e, t, fix, counts, scratch):
+def take_fix(p, c, e, t, fix, counts, w):
     """Turn a valid fix into an epoch: whether one has ended, and whether `e` holds it whole."""
     c["valid_fix_t"] = t
     e["next_speed"] = np.nan
-    velocity = scratch[2]
+    velocity = w["velocity"]
     if not velocity_of_fix(p, c, t, fix, velocity):
         counts[FIX_WITHOUT_VELOCITY] += 1
         return NO_EPOCH
@@ -499,7 +529,7 @@ def take_fix(p, c, e, t, fix, counts, scratch):
 
 
 @njit(cache=True, nogil=True)
-def merge_epoch(p, c, x, e, scratch):
+def merge_epoch(p, c, x, e, w):
     """Merge an epoch into the longer one `x` that the coarse alignment uses; True when that is complete.
 
     The noise of a speed difference counts less the longer the epoch, and driving shows little above 1 Hz.
@@ -521,9 +551,9 @@ def merge_epoch(p, c, x, e, scratch):
     missing = 0.0
     for h in range(p["epoch_latency_count"]):
         delay = h * p["epoch_latency_step"]
-        if not mean_signals(c, x["start"], e["t"], delay, x["f_s"][h], x["w_s"][h], scratch):
+        if not mean_signals(c, x["start"], e["t"], delay, x["f_s"][h], x["w_s"][h], w):
             return False
-        missing += scratch[0, 7]
+        missing += w["begin"][7]
     x["gyro"] = missing == 0.0
     return True
 
@@ -667,20 +697,26 @@ def largest_eigenvalue(b, n):
 @njit(cache=True, nogil=True)
 def cofactor(n, row, column, value):
     """Cofactor of N - value * 1."""
-    m = np.empty((3, 3))
-    r = 0
-    for i in range(4):
-        if i == row:
-            continue
-        c = 0
-        for j in range(4):
-            if j == column:
-                continue
-            m[r, c] = n[i, j] - (value if i == j else 0.0)
-            c += 1
-        r += 1
-    det = determinant3(m[0, 0], m[0, 1], m[0, 2], m[1, 0], m[1, 1], m[1, 2], m[2, 0], m[2, 1], m[2, 2])
+    i, j, k = others(row)
+    u, v, w = others(column)
+    det = determinant3(
+        shifted(n, i, u, value), shifted(n, i, v, value), shifted(n, i, w, value),
+        shifted(n, j, u, value), shifted(n, j, v, value), shifted(n, j, w, value),
+        shifted(n, k, u, value), shifted(n, k, v, value), shifted(n, k, w, value),
+    )  # fmt: skip
     return -det if (row + column) % 2 else det
+
+
+@njit(cache=True, nogil=True)
+def others(index):
+    """The three of 0 to 3 that are not `index`."""
+    return 1 if index < 1 else 0, 2 if index < 2 else 1, 3 if index < 3 else 2
+
+
+@njit(cache=True, nogil=True)
+def shifted(n, i, j, value):
+    """Element of N - value * 1."""
+    return n[i, j] - value if i == j else n[i, j]
 
 
 @njit(cache=True, nogil=True)
@@ -924,12 +960,13 @@ def turn_rows(rows, t):
 
 
 @njit(cache=True, nogil=True)
-def keep_level_covariance(m, before):
+def keep_level_covariance(m, before, w):
     """After a change of the attitude: its covariance stays what it is in the level frame."""
-    after, t = np.empty((3, 3)), np.zeros((3, 3))
+    after, t = w["r_turned"], w["turn"]
     rotation_matrix(m["q_nv"], after)
     for i in range(3):
         for j in range(3):
+            t[i, j] = 0.0
             for k in range(3):
                 t[i, j] += after[k, i] * before[k, j]
     cov = m["covariance"]
@@ -1030,8 +1067,10 @@ def refine(p, m, a, e):
 
     What was learnt about lever arm, suspension and biases while it was far off rests on wrong axes.
     """
+    if m["refined"] or not math.isfinite(e["course"]):
+        return
     covariance = mounting_covariance(m)
-    if m["refined"] or largest_sigma(covariance) > p["filter_refine_sigma"] or not math.isfinite(e["course"]):
+    if largest_sigma(covariance) > p["filter_refine_sigma"]:
         return
     start_filter(p, m, e, m["q_vs"].copy(), covariance, a["bias"], m["latency"])
     m["refined"] = True
@@ -1069,12 +1108,13 @@ def road_transition(length, distance, f):
 
 
 @njit(cache=True, nogil=True)
-def predict_state(p, m, period, distance, bank, grade):
-    """Prediction (4.37)-(4.51): speed, turn about the vertical, road under the vehicle, altitude."""
+def predict_state(p, m, period, distance, r, bank, grade):
+    """Prediction (4.37)-(4.51): speed, turn about the vertical, road under the vehicle, altitude.
+
+    `r` is the rotation of the attitude before it.
+    """
     m["last_forward"] = m["acceleration"]
     m["last_lateral"] = m["speed"] * m["yaw_rate"]
-    r = np.empty((3, 3))
-    rotation_matrix(m["q_nv"], r)
     road_transition(p["filter_bank_length"], distance, bank)
     road_transition(p["filter_grade_length"], distance, grade)
     roll, pitch = math.asin(r[2, 1]), -math.asin(r[2, 0])
@@ -1119,10 +1159,10 @@ def remember_rows(cov, n):
 
 
 @njit(cache=True, nogil=True)
-def predict(p, m, period, n):
+def predict(p, m, period, n, w):
     """Prediction of state and covariance over one epoch; the turn is folded into the reference attitude at once."""
     cov = m["covariance"]
-    bank, grade, up, r = np.empty((2, 2)), np.empty((2, 2)), np.empty(3), np.empty((3, 3))
+    bank, grade, up, r = w["bank"], w["grade"], w["up"], w["r_nv"]
     distance = period * m["speed"]
     rotation_matrix(m["q_nv"], r)
     up[:] = r[2, :]
@@ -1130,7 +1170,7 @@ def predict(p, m, period, n):
     remember_rows(cov.T, n)
     if p["filter_constant_over_epoch"]:
         add_motion_noise(p, cov, period)
-    predict_state(p, m, period, distance, bank, grade)
+    predict_state(p, m, period, distance, r, bank, grade)
     share = p["filter_mean_share"]
     transition_rows(cov, n, period, share, distance, up, bank, grade)
     transition_rows(cov.T, n, period, share, distance, up, bank, grade)
@@ -1143,7 +1183,7 @@ def predict(p, m, period, n):
 
 
 @njit(cache=True, nogil=True)
-def predict_force(m, period, share, exact, up, force, jacobian):
+def predict_force(m, period, share, exact, up, force, jacobian, partials):
     """Specific force in vehicle axes and its Jacobian.
 
     Kinematic acceleration of the device by Rivals' formula (seed 004 eq. 4), gravity on the road's slope, and the body
@@ -1165,8 +1205,9 @@ def predict_force(m, period, share, exact, up, force, jacobian):
     force[0] = road + stiff * dive * forward - GRAVITY * pitched
     force[1] = side + stiff * lean * lateral + GRAVITY * rolled
     force[2] = stiff - dive * forward * road - lean * lateral * side
-    d_forward, d_lateral = np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS)
-    d_road, d_side, d_stiff = np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS), np.zeros(GYRO_BIAS)
+    partials[:] = 0.0
+    d_forward, d_lateral = partials[0], partials[1]
+    d_road, d_side, d_stiff = partials[2], partials[3], partials[4]
     d_forward[ACCELERATION] = 1.0
     d_forward[YAW_RATE] = -2 * (1 - share) * rate * arm[0] - arm[1] / period
     d_forward[YAW_RATE_BEFORE] = -2 * share * rate * arm[0] + arm[1] / period
@@ -1283,23 +1324,23 @@ def predict_velocity(m, r_nv, z, h):
 
 
 @njit(cache=True, nogil=True)
-def predict_measurements(p, m, e, r_vs, z, h):
+def predict_measurements(p, m, e, r_vs, z, h, w):
     """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate, height.
 
     What the sensor reads is turned into the axes of the vehicle, as far as they are known, and predicted there: what
     the update does to a component (gate, learnt noise) then turns with the log.
     """
-    r_nv = np.empty((3, 3))
+    r_nv = w["r_nv"]
     rotation_matrix(m["q_nv"], r_nv)
-    up = r_nv[2]
+    up, share, exact = r_nv[2], p["filter_mean_share"], p["filter_exact_kinematics"]
     h[:] = 0.0
-    predict_force(m, e["period"], p["filter_mean_share"], p["filter_exact_kinematics"], up, z[FORCE:], h[FORCE:])
+    predict_force(m, e["period"], share, exact, up, z[FORCE:], h[FORCE:], w["partials"])
     add_mounting(z[FORCE:], h[FORCE:])
     if z[FORCE] * z[FORCE] + z[FORCE + 1] * z[FORCE + 1] < p["filter_least_acceleration"] ** 2:
         h[FORCE, MOUNTING + 2] = h[FORCE + 1, MOUNTING + 2] = 0.0
     predict_velocity(m, r_nv, z[VELOCITY:], h[VELOCITY:])
     if e["gyro"]:
-        predict_rate(m, e["period"], p["filter_mean_share"], up, z[RATE:], h[RATE:])
+        predict_rate(m, e["period"], share, up, z[RATE:], h[RATE:])
         add_mounting(z[RATE:], h[RATE:])
     for i in range(3):
         z[FORCE + i] += turned(r_vs, m["bias"], i)
@@ -1351,14 +1392,13 @@ def observe(p, m, e, r_vs, y, noise):
 
 
 @njit(cache=True, nogil=True)
-def update(p, m, e, n):
+def update(p, m, e, n, w):
     """Update (4.18)-(4.23): scalar after scalar about one point of linearisation, the same as all at once."""
     cov = m["covariance"]
-    z, y, noise = np.empty(MEASUREMENTS), np.empty(MEASUREMENTS), np.empty(MEASUREMENTS)
-    h = np.empty((MEASUREMENTS, STATES))
-    dx, ph, r_vs = np.zeros(STATES), np.empty(STATES), np.empty((3, 3))
+    z, y, noise, h, dx, ph, r_vs = w["z"], w["y"], w["noise"], w["h"], w["dx"], w["ph"], w["r_vs"]
+    dx[:] = 0.0
     rotation_matrix(m["q_vs"], r_vs)
-    predict_measurements(p, m, e, r_vs, z, h)
+    predict_measurements(p, m, e, r_vs, z, h, w)
     observe(p, m, e, r_vs, y, noise)
     if not math.isfinite(noise[VELOCITY]):  # no course: the speed alone, along the vehicle
         h[VELOCITY, :] = 0.0
@@ -1391,7 +1431,7 @@ def update(p, m, e, n):
             dx[i] += ph[i] * innovation * scale
             for j in range(n):
                 cov[i, j] -= ph[i] * ph[j] * scale  # this order of factors keeps the matrix exactly symmetric
-    fold(p, m, dx)
+    fold(p, m, dx, w)
     if not math.isfinite(m["altitude"]) and math.isfinite(e["altitude"]) and math.isfinite(p["filter_altitude_noise"]):
         begin_altitude(m, e["altitude"], p["filter_altitude_noise"])
 
@@ -1427,10 +1467,10 @@ def learnt_noise(p, m, which):
 
 
 @njit(cache=True, nogil=True)
-def learn_road(p, m, distance):
+def learn_road(p, m, distance, w):
     """Variance of the road's bank and grade: the mean square of their estimates and uncertainties (EM)."""
     share = min(distance / p["filter_road_memory"], 1.0)
-    r = np.empty((3, 3))
+    r = w["r_nv"]
     rotation_matrix(m["q_nv"], r)
     for axis in range(2):
         angle = r[2, 1] if axis == 0 else r[2, 0]
@@ -1440,17 +1480,17 @@ def learn_road(p, m, distance):
 
 
 @njit(cache=True, nogil=True)
-def fold(p, m, dx):
+def fold(p, m, dx, w):
     """Fold the error state into the references and reset it (4.29), (4.30); the speed stays positive."""
     m["speed"] = max(m["speed"] + dx[SPEED], 0.0)
     m["acceleration"] += dx[ACCELERATION]
     m["yaw_rate"] += dx[YAW_RATE]
     m["yaw_rate_before"] += dx[YAW_RATE_BEFORE]
-    before = np.empty((3, 3))
+    before = w["r_nv"]
     rotation_matrix(m["q_nv"], before)
     turn_right(m["q_nv"], dx[ATTITUDE], dx[ATTITUDE + 1], dx[ATTITUDE + 2])
     if p["filter_level_errors"]:
-        keep_level_covariance(m, before)
+        keep_level_covariance(m, before, w)
     turn(m["q_vs"], dx[MOUNTING], dx[MOUNTING + 1], dx[MOUNTING + 2])
     for i in range(3):
         m["bias"][i] += dx[BIAS + i]
@@ -1468,17 +1508,17 @@ def fold(p, m, dx):
 
 
 @njit(cache=True, nogil=True)
-def start_where_possible(p, m, a, e):
+def start_where_possible(p, m, a, e, w):
     """Start the filter or its motion where it is not running; True when there is a step to make already."""
     heading_known = e["moving"] and math.isfinite(e["course"])
     if not p["filter_start_from_coarse"]:
         if not m["running"]:
             start_at_identity(p, m)
         if not m["aligned"] and heading_known:
-            before = np.empty((3, 3))
+            before = w["r_nv"]
             rotation_matrix(m["q_nv"], before)
             set_heading(m, e["course"])
-            keep_level_covariance(m, before)
+            keep_level_covariance(m, before, w)
             m["aligned"] = True
         return True
     if m["running"] and m["aligned"]:
@@ -1497,22 +1537,22 @@ def start_where_possible(p, m, a, e):
 
 
 @njit(cache=True, nogil=True)
-def step_filter(p, c, m, a, e, scratch):
+def step_filter(p, c, m, a, e, w):
     """One epoch: start where it can be started, else predict and update; True when the filter made a step."""
     if not e["usable"]:
         m["aligned"] = False
         return False
-    if not start_where_possible(p, m, a, e):
+    if not start_where_possible(p, m, a, e, w):
         return False
-    if not delayed_signals(p, c, m["latency"], e, scratch):
+    if not delayed_signals(p, c, m["latency"], e, w):
         m["aligned"] = False
         return False
     m["gyro"] = m["gyro"] or e["gyro"]
     n = STATES if m["gyro"] else GYRO_BIAS  # without a gyroscope the last states are not carried
-    predict(p, m, e["period"], n)
-    update(p, m, e, n)
+    predict(p, m, e["period"], n, w)
+    update(p, m, e, n, w)
     if math.isfinite(p["filter_road_memory"]):
-        learn_road(p, m, e["period"] * e["mean_speed"])
+        learn_road(p, m, e["period"] * e["mean_speed"], w)
     if p["filter_start_from_coarse"]:
         refine(p, m, a, e)
     return True
@@ -1539,7 +1579,7 @@ def mounting_sigma(p, covariance, offset, ratio, sigma):
 
 
 @njit(cache=True, nogil=True)
-def move_average(p, s, q, period):
+def move_average(p, s, q, period, w):
     """Moving average (5.4) over the last n epochs, signs aligned; gives how fast it turns, rad/s."""
     size = s["ring"].shape[0]
     head = (s["head"] + 1) % size
@@ -1557,7 +1597,8 @@ def move_average(p, s, q, period):
         wanted = min(max(int(p["settling_average_window"] / period), 5), size)
     s["count"] = min(s["count"] + 1, size)
     used = min(s["count"], wanted)
-    mean, step = np.zeros(4), np.empty(3)
+    mean, step = w["mean"], w["d"]
+    mean[:] = 0.0
     for back in range(used):
         for i in range(4):
             mean[i] += s["ring"][(head - back) % size, i]
@@ -1572,11 +1613,11 @@ def move_average(p, s, q, period):
 
 
 @njit(cache=True, nogil=True)
-def second_opinion(p, m, a):
+def second_opinion(p, m, a, w):
     """Filter and coarse alignment agree, within their sigmas and within an angle."""
     if not math.isfinite(a["solved_time"]):
         return False
-    d, total = np.empty(3), np.empty((3, 3))
+    d, total = w["d"], w["total"]
     difference(m["q_vs"], a["q_vs"], d)
     for i in range(3):
         for j in range(3):
@@ -1587,16 +1628,16 @@ def second_opinion(p, m, a):
 
 
 @njit(cache=True, nogil=True)
-def settle(p, s, m, a, e, sigma):
+def settle(p, s, m, a, e, sigma, w):
     """STABLE and RELIABLE."""
-    s["stable"] = move_average(p, s, m["q_vs"], e["period"]) < p["settling_stable_rate"]
+    s["stable"] = move_average(p, s, m["q_vs"], e["period"], w) < p["settling_stable_rate"]
     if p["settling_reliable_yaw_rate"] > 0:
         turning = e["moving"] and abs(e["yaw_rate"]) > p["settling_reliable_yaw_rate"]
         s["reliable"] = s["reliable"] or turning
         s["agrees"] = True
         return
     s["right_handed"] = a["mirror"] < (p["fault_mirror_doubt"] if s["right_handed"] else p["fault_right_handed"])
-    s["agrees"] = second_opinion(p, m, a)
+    s["agrees"] = second_opinion(p, m, a, w)
     informed = max(sigma[0], sigma[1]) < p["settling_start_tilt_sigma"] and sigma[2] < p["settling_start_yaw_sigma"]
     excited = s["forward_excitation"] + s["lateral_excitation"] > p["settling_excitation"]
     s["reliable"] = informed and excited and s["agrees"] and s["right_handed"] and trusted(p, m)
@@ -1817,7 +1858,7 @@ def judge(p, g, a, n, s, e, distance):
 
 
 @njit(cache=True, nogil=True)
-def watch_for_change(p, c, g, mekf, a, s, e, scratch):
+def watch_for_change(p, c, g, mekf, a, s, e, w):
     """Sequential test of the confirmed mounting by a challenger; True when the device has moved.
 
     WATCHING, the challenger begins anew every window. A distance it should hardly ever show makes it begin once more at
@@ -1830,7 +1871,7 @@ def watch_for_change(p, c, g, mekf, a, s, e, scratch):
         g["ratio"] = noise_ratio(p, a)
         g["innocent_t"] = e["t"]
         return False
-    if g["state"] == IDLE or not step_filter(p, c, n, a, e, scratch):
+    if g["state"] == IDLE or not step_filter(p, c, n, a, e, w):
         return False
     if e["moving"]:
         g["age"] += e["period"]
@@ -1989,12 +2030,11 @@ def verify(p, s, v, m, e, sigma, events, count):
 
 
 @njit(cache=True, nogil=True)
-def recover_filter(p, m, a, s):
+def recover_filter(p, m, a, s, d):
     """A filter far from a good second opinion, in angle or latency, has lost its way: it starts again from there."""
     good = math.isfinite(a["solved_time"]) and largest_sigma(a["covariance"]) < p["filter_recover_sigma"]
     if not p["filter_start_from_coarse"] or not good:
         return
-    d = np.empty(3)
     difference(m["q_vs"], a["q_vs"], d)
     angle = math.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)
     lost = not s["agrees"] and angle > 2.5 * p["settling_second_opinion_angle"]
@@ -2078,27 +2118,27 @@ def watch_looseness(p, f, g, t, changed, moved_on, events, evidence, count):
 
 
 @njit(cache=True, nogil=True)
-def align_coarsely(p, c, a, x, s, g, e, scratch, b):
+def align_coarsely(p, c, a, x, s, g, e, w):
     """Feed the coarse alignment with the epochs in motion."""
     if not (e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])):
         x["period"] = 0.0
-    elif merge_epoch(p, c, x, e, scratch):
-        k = scratch[6][:3]
+    elif merge_epoch(p, c, x, e, w):
+        k = w["k"]
         kinematics(x, k)
-        update_coarse(p, a, x, k, b)
+        update_coarse(p, a, x, k, w["b"])
         excite(p, s, g, x, k)
 
 
 @njit(cache=True, nogil=True)
-def process_epoch(p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence, count):
+def process_epoch(p, c, a, x, mekf, s, v, g, f, e, w, events, evidence, count):
     """All stages in order for one epoch; gives the number of events so far."""
-    m, sigma = mekf[0], scratch[7][:3]
+    m, sigma = mekf[0], w["sigma"]
     count = find_faults(p, c, a, f, e, events, evidence, count)
-    align_coarsely(p, c, a, x, s, g, e, scratch, b)
-    if not step_filter(p, c, m, a, e, scratch):
+    align_coarsely(p, c, a, x, s, g, e, w)
+    if not step_filter(p, c, m, a, e, w):
         return count
     mounting_sigma(p, m["covariance"], MOUNTING, noise_ratio(p, a), sigma)
-    settle(p, s, m, a, e, sigma)
+    settle(p, s, m, a, e, sigma, w)
     if v["state"] == 1:
         before, elapsed = count, v["elapsed"]
         count = verify(p, s, v, m, e, sigma, events, count)
@@ -2108,8 +2148,8 @@ def process_epoch(p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence,
     if s["stable"] and s["reliable"] and not s["confirmed"]:
         start_verification(v, s, m, sigma)
         return write_test(events, count, e["t"], STARTED, v, REASON_NONE)
-    recover_filter(p, m, a, s)
-    if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, c, g, mekf, a, s, e, scratch):
+    recover_filter(p, m, a, s, w["d"])
+    if s["confirmed"] and math.isfinite(p["change_window"]) and watch_for_change(p, c, g, mekf, a, s, e, w):
         count = write_change(p, a, events, evidence, count, e["t"], mekf[1], s, g)
         count = watch_looseness(p, f, g, e["t"], True, False, events, evidence, count)
         begin_again(mekf, s, v, g)
@@ -2230,14 +2270,12 @@ def write_speed(e, speeds, count):
 
 @njit(cache=True, nogil=True)
 def run(
-    params, clock, coarse, merged, mekf, settling, verification, change, faults, epochs,
+    params, clock, coarse, merged, mekf, settling, verification, change, faults, epochs, works,
     t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, evidence, speeds, counts,
 ):  # fmt: skip
     """Take all samples of a chunk; mutates the state records; gives the number of rows, of events and of speeds."""
     p, c, a, x, m = params[0], clock[0], coarse[0], merged[0], mekf[0]
-    s, v, g, f, e = settling[0], verification[0], change[0], faults[0], epochs[0]
-    scratch = np.zeros((8, 8))
-    b = np.zeros((3, 3))
+    s, v, g, f, e, w = settling[0], verification[0], change[0], faults[0], epochs[0], works[0]
     row_count, event_count, speed_count, next_fix, i = 0, 0, 0, 0, 0
     while i < t.shape[0]:
         stop = t.shape[0]
@@ -2246,11 +2284,9 @@ def run(
         i = integrate(p, c, t, f_s, w_s, i, stop, counts)
         if i == stop and next_fix < fix_row.shape[0]:
             if fix_valid[next_fix] and t[i - 1] == c["t"]:
-                end = take_fix(p, c, e, t[i - 1], fixes[next_fix], counts, scratch)
+                end = take_fix(p, c, e, t[i - 1], fixes[next_fix], counts, w)
                 if end == COMPLETE:
-                    event_count = process_epoch(
-                        p, c, a, x, mekf, s, v, g, f, e, scratch, b, events, evidence, event_count
-                    )
+                    event_count = process_epoch(p, c, a, x, mekf, s, v, g, f, e, w, events, evidence, event_count)
                     speed_count = write_speed(e, speeds, speed_count)
                 elif end == OUTAGE:  # nobody knows how the vehicle has turned meanwhile
                     mekf[0]["aligned"] = mekf[1]["aligned"] = False

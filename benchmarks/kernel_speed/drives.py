@@ -83,9 +83,20 @@ def collect_epochs(chunk: Chunk) -> NDArray[np.void]:
         first = int(row) + 1
         epoch = np.zeros(1, _kernel.EPOCH)
         rows, events, speeds = np.zeros((2 * len(piece), 14)), np.zeros((16, 18)), np.empty((1, 4))
+        work = np.zeros(1, _kernel.WORK)
         outputs = (rows, events, np.empty((16, LOOKS, 2)), speeds, np.zeros(4, np.int64))
         _kernel.run(
-            params, *state, epoch, piece.t, piece.f_s, piece.w_s, piece.fix_row, piece.fix_valid, piece.fix, *outputs
+            params,
+            *state,
+            epoch,
+            work,
+            piece.t,
+            piece.f_s,
+            piece.w_s,
+            piece.fix_row,
+            piece.fix_valid,
+            piece.fix,
+            *outputs,
         )
         if epoch["usable"][0] and epoch["moving"][0] and np.isfinite(epoch["yaw_rate"][0]):
             epochs.append(epoch)

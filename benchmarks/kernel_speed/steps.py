@@ -50,18 +50,18 @@ class Model(NamedTuple):
     """(k,) measured less predicted at the point of linearisation, as an error state sees it"""
 
 
-def _walk(params: Any, filters: Any, epochs: Any, n: int) -> None:
+def _walk(params: Any, filters: Any, epochs: Any, works: Any, n: int) -> None:
     """Predict and update over all epochs, inside machine code."""
-    p, m = params[0], filters[0]
+    p, m, w = params[0], filters[0], works[0]
     for i in range(epochs.shape[0]):
         e = epochs[i]
-        _kernel.predict(p, m, e["period"], n)
-        _kernel.update(p, m, e, n)
+        _kernel.predict(p, m, e["period"], n, w)
+        _kernel.update(p, m, e, n, w)
 
 
-def _linearise(params: Any, filters: Any, epochs: Any, n: int, f: Any, h: Any, y: Any, noise: Any) -> None:
+def _linearise(params: Any, filters: Any, epochs: Any, works: Any, n: int, f: Any, h: Any, y: Any, noise: Any) -> None:
     """Predict, and fill transition (of a unit matrix), Jacobian, innovations, and noises of the first epoch."""
-    p, m, e = params[0], filters[0], epochs[0]
+    p, m, e, w = params[0], filters[0], epochs[0], works[0]
     bank, grade, r = np.empty((2, 2)), np.empty((2, 2)), np.empty((3, 3))
     distance = e["period"] * m["speed"]
     _kernel.road_transition(p["filter_bank_length"], distance, bank)
@@ -69,10 +69,10 @@ def _linearise(params: Any, filters: Any, epochs: Any, n: int, f: Any, h: Any, y
     _kernel.rotation_matrix(m["q_nv"], r)
     _kernel.remember_rows(f, n)
     _kernel.transition_rows(f, n, e["period"], p["filter_mean_share"], distance, r[2].copy(), bank, grade)
-    _kernel.predict(p, m, e["period"], n)
+    _kernel.predict(p, m, e["period"], n, w)
     z = np.empty(_kernel.MEASUREMENTS)
     _kernel.rotation_matrix(m["q_vs"], r)
-    _kernel.predict_measurements(p, m, e, r, z, h)
+    _kernel.predict_measurements(p, m, e, r, z, h, w)
     _kernel.observe(p, m, e, r, y, noise)
     y -= z
 
@@ -99,7 +99,7 @@ def fullest(filters: NDArray[np.void], epochs: NDArray[np.void]) -> Minute:
 def through(minute: Minute) -> NDArray[np.void]:
     """Give what becomes of the filters in the minute."""
     filters = minute.filters.copy()
-    walk(minute.params, filters, minute.epochs, minute.states)
+    walk(minute.params, filters, minute.epochs, np.zeros(1, _kernel.WORK), minute.states)
     return filters
 
 
@@ -110,7 +110,7 @@ def model_of(minute: Minute) -> Model:
     y, noise = np.empty(_kernel.MEASUREMENTS), np.empty(_kernel.MEASUREMENTS)
     certain = minute.filters.copy()
     certain["covariance"] = 0.0
-    linearise(minute.params, certain, minute.epochs, n, f, h, y, noise)
+    linearise(minute.params, certain, minute.epochs, np.zeros(1, _kernel.WORK), n, f, h, y, noise)
     seen = np.isfinite(noise)
     q, p = certain["covariance"][0, :n, :n].copy(), minute.filters["covariance"][0, :n, :n].copy()
     return Model(np.zeros(n), p, f[:n, :n].copy(), q, h[seen, :n].copy(), np.diag(noise[seen] ** 2), y[seen])

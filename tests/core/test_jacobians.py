@@ -35,6 +35,11 @@ def random_filter(seed: int) -> NDArray[np.void]:
     return record
 
 
+def work() -> np.void:
+    scratch: np.void = np.zeros(1, _kernel.WORK)[0]
+    return scratch
+
+
 def random_epoch(seed: int) -> NDArray[np.void]:
     generator = np.random.default_rng(100 + seed)
     epoch = np.zeros(1, _kernel.EPOCH)
@@ -49,7 +54,7 @@ def predicted(params: Parameters, record: NDArray[np.void], turn: NDArray[np.voi
     now, reference = np.zeros((3, 3)), np.zeros((3, 3))
     _kernel.rotation_matrix(record["q_vs"][0], now)
     _kernel.rotation_matrix(turn["q_vs"][0], reference)
-    _kernel.predict_measurements(as_record(params)[0], record[0], EPOCHS[0], now, z, h)
+    _kernel.predict_measurements(as_record(params)[0], record[0], EPOCHS[0], now, z, h, work())
     for first in (_kernel.FORCE, _kernel.RATE):
         z[first : first + 3] = reference @ now.T @ z[first : first + 3]
     return z, h
@@ -61,7 +66,7 @@ EPOCHS = random_epoch(0)
 def perturbed(params: Parameters, record: NDArray[np.void], index: int, step: float) -> NDArray[np.void]:
     record, dx = record.copy(), np.zeros(STATES)
     dx[index] = step
-    _kernel.fold(as_record(params)[0], record[0], dx)
+    _kernel.fold(as_record(params)[0], record[0], dx, work())
     return record
 
 
@@ -114,19 +119,19 @@ def test_transition_jacobian(params: Parameters) -> None:
     record["gradient"] = 0.0
     _kernel.set_heading(record[0], 0.7)
     reference = record.copy()
-    _kernel.predict(values, reference[0], period, STATES)
+    _kernel.predict(values, reference[0], period, STATES, work())
     for index in range(STATES):
         if index == _kernel.LATENCY and params is THESIS:
             continue  # the thesis knows of none
         ends = []
         for step in (STEP, -STEP):
             moved = perturbed(params, record, index, step)
-            _kernel.predict(values, moved[0], period, STATES)
+            _kernel.predict(values, moved[0], period, STATES, work())
             ends.append(error_between(moved, reference))
         numeric = (ends[0] - ends[1]) / (2 * STEP)
         unit, noise = record.copy(), record.copy()
         unit["covariance"][0, index, index] = 1.0
         for filters in (unit, noise):
-            _kernel.predict(values, filters[0], period, STATES)
+            _kernel.predict(values, filters[0], period, STATES, work())
         applied = unit["covariance"][0] - noise["covariance"][0]  # F e e' F'
         np.testing.assert_allclose(applied, np.outer(numeric, numeric), rtol=5e-3, atol=1e-5, err_msg=str(index))
