@@ -9,9 +9,17 @@ verification, `g` change; `e` the epoch at hand, `x` the longer one of the coars
 """
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
+
+_PLAIN: Any = {"cache": True, "nogil": True, "_nrt": False}
+plain = njit(**_PLAIN)
+"""For functions that make no arrays: who holds those they are given is not counted, which would take a fifth of the
+time. numba has this option for itself alone: where a version has it no longer, leave it out, and all gives the same."""
+making = njit(**(_PLAIN | {"_nrt": True}))
+"""For the others, which come seldom; to set a slice to an array counts as making one."""
 
 GRAVITY = 9.80665
 """m/s2, standard gravity"""
@@ -140,7 +148,7 @@ a third of the time."""
 # ---------------------------------------------------------------------------------------------------- rotations
 
 
-@njit(cache=True, nogil=True)
+@plain
 def rotation_matrix(q, r):
     """R = R(q), thesis (C.3) with the scalar first."""
     w, x, y, z = q[0], q[1], q[2], q[3]
@@ -155,7 +163,7 @@ def rotation_matrix(q, r):
     r[2, 2] = 1 - 2 * (x * x + y * y)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def turn(q, x, y, z):
     """Q = dq(a) * q with the Rodrigues vector a = (x, y, z), thesis (4.24) and (4.26)."""
     n = 1.0 / math.sqrt(4.0 + x * x + y * y + z * z)
@@ -171,7 +179,7 @@ def turn(q, x, y, z):
     q[3] = q3 * n
 
 
-@njit(cache=True, nogil=True)
+@plain
 def turn_right(q, x, y, z):
     """Q = q * dq(a): the Rodrigues vector a = (x, y, z) in the axes that q turns from."""
     n = 1.0 / math.sqrt(4.0 + x * x + y * y + z * z)
@@ -187,7 +195,7 @@ def turn_right(q, x, y, z):
     q[3] = q3 * n
 
 
-@njit(cache=True, nogil=True)
+@plain
 def difference(q, p, d):
     """D = rotation vector of q * p^-1, rad."""
     w = q[0] * p[0] + q[1] * p[1] + q[2] * p[2] + q[3] * p[3]
@@ -204,13 +212,13 @@ def difference(q, p, d):
         d[i] *= scale
 
 
-@njit(cache=True, nogil=True)
+@plain
 def wrap(angle):
     """Angle in [-pi, pi)."""
     return angle - 2 * math.pi * np.floor((angle + math.pi) / (2 * math.pi))
 
 
-@njit(cache=True, nogil=True)
+@plain
 def mahalanobis(d, covariance):
     """D' C^-1 d for three components (Cholesky)."""
     l00 = math.sqrt(covariance[0, 0])
@@ -228,7 +236,7 @@ def mahalanobis(d, covariance):
 # ------------------------------------------------------------------------------------------------ clock and epochs
 
 
-@njit(cache=True, nogil=True)
+@plain
 def begin_chain(c, t):
     """Start the integrated signal anew: after a gap nothing older may be averaged."""
     c["integral"][:] = 0.0
@@ -238,7 +246,7 @@ def begin_chain(c, t):
     push_point(c, t)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def push_point(c, t):
     """Keep the integral at time t in the ring."""
     size = c["ring_t"].shape[0]
@@ -250,7 +258,7 @@ def push_point(c, t):
         c["ring"][head, j] = c["integral"][j]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def integrate(p, c, t, f_s, w_s, first, stop, counts):
     """Take IMU samples up to `stop` or until a report is due; gives the index after the last one taken.
 
@@ -306,7 +314,7 @@ def integrate(p, c, t, f_s, w_s, first, stop, counts):
     return i
 
 
-@njit(cache=True, nogil=True)
+@plain
 def watch_repeats(c, same_x, same_y, same_z, x, y, z):
     """Count how long each axis repeats itself, and the samples that rest at the end of the range."""
     c["repeats"][0] = c["repeats"][0] + 1 if same_x else 0
@@ -321,7 +329,7 @@ def watch_repeats(c, same_x, same_y, same_z, x, y, z):
         c["flat_tops"] += 1
 
 
-@njit(cache=True, nogil=True)
+@plain
 def integral_at(c, t, out):
     """Integral at time t, linear between the points of the ring; False when t is not covered."""
     size, head, count = c["ring_t"].shape[0], c["ring_head"], c["ring_count"]
@@ -344,7 +352,7 @@ def integral_at(c, t, out):
     return True
 
 
-@njit(cache=True, nogil=True)
+@plain
 def mean_signals(c, start, end, delay, f_s, w_s, w):
     """Mean specific force and angular rate of [start, end] that many seconds ago: False when not covered.
 
@@ -352,8 +360,8 @@ def mean_signals(c, start, end, delay, f_s, w_s, w):
     """
     begin, stop = w["begin"], w["stop"]
     if delay == 0.0 and abs(start - c["fix_t"]) < 1e-9:
-        begin[:7] = c["fix_integral"]
-        stop[:7] = c["integral"]
+        for j in range(7):
+            begin[j], stop[j] = c["fix_integral"][j], c["integral"][j]
     elif not (integral_at(c, start - delay, begin) and integral_at(c, end - delay, stop)):
         return False
     for j in range(3):
@@ -363,7 +371,7 @@ def mean_signals(c, start, end, delay, f_s, w_s, w):
     return True
 
 
-@njit(cache=True, nogil=True)
+@plain
 def delayed_signals(p, c, delay, e, w):
     """Mean signals of the epoch at the latency `delay` and how they change with it; False when not covered."""
     start, end = e["t"] - e["period"], e["t"]
@@ -382,7 +390,7 @@ def delayed_signals(p, c, delay, e, w):
     return covered
 
 
-@njit(cache=True, nogil=True)
+@plain
 def velocity_of_fix(p, c, t, fix, velocity):
     """Speed and course of a fix, from its positions where the receiver gives none; False when there is neither."""
     speed, course = fix[3], fix[4]
@@ -404,7 +412,7 @@ def velocity_of_fix(p, c, t, fix, velocity):
     return math.isfinite(speed)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def stated_noise(p, fix):
     """Velocity noise per horizontal axis, m/s: what the receiver states, within reason, else the usual one."""
     along, across = fix[6], fix[7] * fix[3]
@@ -417,7 +425,7 @@ def stated_noise(p, fix):
     return min(max(math.sqrt(0.5 * (along * along + across * across)), 0.5 * p["filter_speed_noise"]), 10.0)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def smooth_altitude(p, c, t, fix):
     """Critically damped tracking of altitude and climb rate; a receiver's vertical speed is taken as it is."""
     if math.isfinite(fix[5]):
@@ -440,7 +448,7 @@ def smooth_altitude(p, c, t, fix):
     c["altitude_t"] = t
 
 
-@njit(cache=True, nogil=True)
+@plain
 def watch_direction(p, c, speed, course):
     """Reversing shows as a course that jumps by about 180 deg while the vehicle is slow."""
     if speed < p["epoch_moving_speed"]:
@@ -454,18 +462,19 @@ def watch_direction(p, c, speed, course):
         c["reversing"] = False
 
 
-@njit(cache=True, nogil=True)
+@plain
 def start_epoch(c, t, speed, course):
     """Let the next epoch begin at this fix."""
     c["fix_t"] = t
     c["fix_speed"] = speed
     c["fix_course"] = course
-    c["fix_integral"][:] = c["integral"]
+    for j in range(7):
+        c["fix_integral"][j] = c["integral"][j]
     c["flat_tops"] = 0
     c["samples"] = 0
 
 
-@njit(cache=True, nogil=True)
+@plain
 def describe_epoch(p, c, e, t, speed, course, fix):
     """Kinematics between the fix that began the epoch and this one; False when it is a jump."""
     period = t - c["fix_t"]
@@ -492,7 +501,7 @@ def describe_epoch(p, c, e, t, speed, course, fix):
     return not (jump or (e["moving"] and abs(e["yaw_rate"]) > p["epoch_max_yaw_rate"]))
 
 
-@njit(cache=True, nogil=True)
+@plain
 def take_fix(p, c, e, t, fix, counts, w):
     """Turn a valid fix into an epoch: whether one has ended, and whether `e` holds it whole."""
     c["valid_fix_t"] = t
@@ -528,7 +537,7 @@ def take_fix(p, c, e, t, fix, counts, w):
 # ------------------------------------------------------------------------------------------------ coarse alignment
 
 
-@njit(cache=True, nogil=True)
+@plain
 def merge_epoch(p, c, x, e, w):
     """Merge an epoch into the longer one `x` that the coarse alignment uses; True when that is complete.
 
@@ -558,13 +567,13 @@ def merge_epoch(p, c, x, e, w):
     return True
 
 
-@njit(cache=True, nogil=True)
+@plain
 def mixed(share, x, y):
     """Mean of x and y, x with the given share."""
     return y if share == 0 else share * x + (1 - share) * y
 
 
-@njit(cache=True, nogil=True)
+@plain
 def kinematics(x, k):
     """Kinematic specific force k_v of an epoch in motion."""
     k[0] = x["speed_change"] / x["period"] + GRAVITY * x["grade"]
@@ -572,7 +581,7 @@ def kinematics(x, k):
     k[2] = GRAVITY
 
 
-@njit(cache=True, nogil=True)
+@plain
 def accumulate(p, a, x, k, first, count):
     """Add an epoch in motion to the sums, for the latency hypotheses from `first` on."""
     weight = x["period"]
@@ -592,7 +601,7 @@ def accumulate(p, a, x, k, first, count):
         accumulate_gyro(p, a, x, weight, first, count)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def accumulate_gyro(p, a, x, weight, first, count):
     """Add the pair angular rate, yaw rate from the course, which is the noisier the slower the vehicle."""
     rate = x["yaw_rate"]
@@ -609,7 +618,7 @@ def accumulate_gyro(p, a, x, weight, first, count):
             a["ww"][h] += weight * w * w
 
 
-@njit(cache=True, nogil=True)
+@plain
 def clear_sums(a):
     """Empty the accumulators of a coarse alignment; latency and noise stay known."""
     a["time"] = a["gyro_time"] = a["r"] = a["rr"] = 0.0
@@ -624,7 +633,7 @@ def clear_sums(a):
     a["solved_time"] = np.nan
 
 
-@njit(cache=True, nogil=True)
+@plain
 def profile_matrix(a, h, prior, noise, gyro_noise, b):
     """B = sum of f_s k_v' with the bias eliminated, in units of information; gives the sum of squares beside it."""
     n = a["time"] + prior
@@ -644,7 +653,7 @@ def profile_matrix(a, h, prior, noise, gyro_noise, b):
     return total
 
 
-@njit(cache=True, nogil=True)
+@plain
 def horn_matrix(b, n):
     """Horn's symmetric 4x4 matrix of B: the quaternion with k ~ R(q) f is its eigenvector of the largest eigenvalue."""
     n[0, 0] = b[0, 0] + b[1, 1] + b[2, 2]
@@ -659,13 +668,13 @@ def horn_matrix(b, n):
     n[2, 3] = n[3, 2] = b[1, 2] + b[2, 1]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def determinant3(a, b, c, d, e, f, g, h, i):
     """Determinant of a 3x3 matrix given row by row."""
     return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def largest_eigenvalue(b, n):
     """Largest eigenvalue of Horn's matrix, by Newton's method on its characteristic polynomial (QUEST).
 
@@ -694,7 +703,7 @@ def largest_eigenvalue(b, n):
     return value
 
 
-@njit(cache=True, nogil=True)
+@plain
 def cofactor(n, row, column, value):
     """Cofactor of N - value * 1."""
     i, j, k = others(row)
@@ -707,19 +716,19 @@ def cofactor(n, row, column, value):
     return -det if (row + column) % 2 else det
 
 
-@njit(cache=True, nogil=True)
+@plain
 def others(index):
     """The three of 0 to 3 that are not `index`."""
     return 1 if index < 1 else 0, 2 if index < 2 else 1, 3 if index < 3 else 2
 
 
-@njit(cache=True, nogil=True)
+@plain
 def shifted(n, i, j, value):
     """Element of N - value * 1."""
     return n[i, j] - value if i == j else n[i, j]
 
 
-@njit(cache=True, nogil=True)
+@making
 def best_rotation(b, q):
     """Wahba's problem: k ~ R(q) f for B = sum f k'; gives the largest eigenvalue.
 
@@ -746,7 +755,7 @@ def best_rotation(b, q):
     return value
 
 
-@njit(cache=True, nogil=True)
+@making
 def mirror_evidence(p, a, noise, b):
     """How much better a mirror image explains the accelerations than any rotation does: log of the likelihood ratio.
 
@@ -768,7 +777,7 @@ def mirror_evidence(p, a, noise, b):
     return 0.5 * (rotation - reflection)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def invert_information(info, covariance):
     """Inverse of a symmetric 3x3 matrix; a ridge keeps directions without information finite."""
     for i in range(3):
@@ -785,7 +794,7 @@ def invert_information(info, covariance):
     covariance[2, 2] = (info[0, 0] * info[1, 1] - info[0, 1] * info[0, 1]) / det
 
 
-@njit(cache=True, nogil=True)
+@making
 def coarse_covariance(a, prior, noise, gyro_noise, covariance):
     """Covariance of the solution: inverse of (tr(M) 1 - M) / S with M the scatter of k_v, bias eliminated."""
     info = np.zeros((3, 3))
@@ -804,7 +813,7 @@ def coarse_covariance(a, prior, noise, gyro_noise, covariance):
     invert_information(info, covariance)
 
 
-@njit(cache=True, nogil=True)
+@making
 def choose_latency(p, a, prior, noise, gyro_noise):
     """The hypothesis with the smallest residual, refined by a parabola through its neighbours; gives that residual."""
     count = p["epoch_latency_count"]
@@ -832,7 +841,7 @@ def choose_latency(p, a, prior, noise, gyro_noise):
     return costs[best]
 
 
-@njit(cache=True, nogil=True)
+@making
 def solve_coarse(p, a, b, choose):
     """Solve the weighted Procrustes problem: mounting, bias, covariance, noise density and latency."""
     noise = a["noise_density"]
@@ -862,7 +871,7 @@ def solve_coarse(p, a, b, choose):
     a["solved_time"] = a["time"]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def update_coarse(p, a, e, k, b):
     """Accumulate an epoch in motion and solve again once in a while; True when there is a new solution."""
     accumulate(p, a, e, k, 0, p["epoch_latency_count"])
@@ -880,7 +889,7 @@ def update_coarse(p, a, e, k, b):
     return True
 
 
-@njit(cache=True, nogil=True)
+@plain
 def largest_sigma(covariance):
     """Largest of the three axis sigmas, rad."""
     return math.sqrt(max(covariance[0, 0], covariance[1, 1], covariance[2, 2]))
@@ -889,7 +898,7 @@ def largest_sigma(covariance):
 # ---------------------------------------------------------------------------------------------------------- filter
 
 
-@njit(cache=True, nogil=True)
+@plain
 def add_thesis_noise(p, m, cov, period):
     """Noises gated by speed and yaw rate and the Wiener-process cross terms, (4.63) and (4.66)-(4.70)."""
     sigma, steps = p["filter_acceleration_noise"], period / REFERENCE_PERIOD
@@ -904,14 +913,14 @@ def add_thesis_noise(p, m, cov, period):
         cov[MOUNTING + i, MOUNTING + i] += p["filter_mounting_noise_per_yaw_rate"] * rate
 
 
-@njit(cache=True, nogil=True)
+@plain
 def add_motion_noise(p, cov, period):
     """Acceleration and yaw rate take new values, which hold over the epoch, so that they are its means."""
     cov[ACCELERATION, ACCELERATION] += p["filter_acceleration_noise"] * period
     cov[YAW_RATE, YAW_RATE] += p["filter_yaw_rate_noise"] * period
 
 
-@njit(cache=True, nogil=True)
+@plain
 def add_slow_noise(p, m, cov, period, distance):
     """What drifts with time, and the road, which changes with the distance driven."""
     cov[ATTITUDE + 2, ATTITUDE + 2] += p["filter_heading_noise"] * period
@@ -940,7 +949,7 @@ def add_slow_noise(p, m, cov, period, distance):
         cov[j, j] += (sigma * curve) ** 2 * (1 - decay * (x**2 + (1 - x) ** 2))
 
 
-@njit(cache=True, nogil=True)
+@plain
 def set_heading(m, course):
     """Level attitude with the heading of a course (clockwise from north)."""
     half = 0.5 * (0.5 * math.pi - course)
@@ -950,7 +959,7 @@ def set_heading(m, course):
     m["q_nv"][3] = math.sin(half)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def turn_rows(rows, t):
     """Turn three rows by a rotation."""
     for j in range(rows.shape[1]):
@@ -959,7 +968,7 @@ def turn_rows(rows, t):
             rows[i, j] = t[i, 0] * x + t[i, 1] * y + t[i, 2] * z
 
 
-@njit(cache=True, nogil=True)
+@plain
 def keep_level_covariance(m, before, w):
     """After a change of the attitude: its covariance stays what it is in the level frame."""
     after, t = w["r_turned"], w["turn"]
@@ -977,7 +986,7 @@ def keep_level_covariance(m, before, w):
             cov[j, i] = cov[i, j]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def clear_state(cov, first, last):
     """Take the uncertainty of the states [first, last) and their correlation with all others out."""
     for i in range(first, last):
@@ -986,7 +995,7 @@ def clear_state(cov, first, last):
             cov[j, i] = 0.0
 
 
-@njit(cache=True, nogil=True)
+@plain
 def begin_motion(p, m, e):
     """Forget the motion and the attitude of the vehicle, keep mounting and biases: start, outage, reversing."""
     speed = e["speed"]
@@ -1016,7 +1025,7 @@ def begin_motion(p, m, e):
     m["aligned"] = True
 
 
-@njit(cache=True, nogil=True)
+@plain
 def begin_altitude(m, altitude, sigma):
     """Take the altitude as it is given: only its changes count."""
     m["altitude"] = altitude
@@ -1024,7 +1033,7 @@ def begin_altitude(m, altitude, sigma):
     m["covariance"][ALTITUDE, ALTITUDE] = sigma**2
 
 
-@njit(cache=True, nogil=True)
+@making
 def start_filter(p, m, e, q, covariance, bias, latency):
     """Start the filter at a mounting with its covariance, everything else at its prior."""
     cov = m["covariance"]
@@ -1055,13 +1064,13 @@ def start_filter(p, m, e, q, covariance, bias, latency):
     m["running"] = True
 
 
-@njit(cache=True, nogil=True)
+@making
 def mounting_covariance(m):
     """Covariance of the filter's mounting, (3, 3)."""
     return m["covariance"][MOUNTING : MOUNTING + 3, MOUNTING : MOUNTING + 3].copy()
 
 
-@njit(cache=True, nogil=True)
+@making
 def refine(p, m, a, e):
     """Start once more when the mounting is known well enough.
 
@@ -1076,7 +1085,7 @@ def refine(p, m, a, e):
     m["refined"] = True
 
 
-@njit(cache=True, nogil=True)
+@plain
 def start_at_identity(p, m):
     """Start as in thesis 5.2: x = 0, P = Q, both quaternions 1 in the frames of the thesis.
 
@@ -1096,7 +1105,7 @@ def start_at_identity(p, m):
     m["aligned"] = False
 
 
-@njit(cache=True, nogil=True)
+@plain
 def road_transition(length, distance, f):
     """Transition of an angle of the road and its gradient, critically damped over the distance."""
     x = distance / length
@@ -1107,7 +1116,7 @@ def road_transition(length, distance, f):
     f[1, 1] = decay * (1 - x)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def predict_state(p, m, period, distance, r, bank, grade):
     """Prediction (4.37)-(4.51): speed, turn about the vertical, road under the vehicle, altitude.
 
@@ -1127,11 +1136,11 @@ def predict_state(p, m, period, distance, r, bank, grade):
     m["yaw_rate_before"] = m["yaw_rate"]
     turn_right(m["q_nv"], roll_step, pitch_step, 0.0)
     m["altitude"] += distance * r[2, 0]
-    m["bounce_before"][:] = m["bounce"]
-    m["bounce"][:] = 0.0
+    for i in range(2):
+        m["bounce_before"][i], m["bounce"][i] = m["bounce"][i], 0.0
 
 
-@njit(cache=True, nogil=True)
+@plain
 def transition_rows(cov, n, period, share, distance, up, bank, grade):
     """F P for the transition F; `up` is the vertical in vehicle axes."""
     for j in range(n):
@@ -1149,23 +1158,25 @@ def transition_rows(cov, n, period, share, distance, up, bank, grade):
         cov[ATTITUDE + 2, j] += up[2] * turned
 
 
-@njit(cache=True, nogil=True)
+@plain
 def remember_rows(cov, n):
     """Keep what was at the end of the last epoch as what is at the beginning of this one."""
-    cov[YAW_RATE_BEFORE, :] = cov[YAW_RATE, :]
+    for j in range(STATES):
+        cov[YAW_RATE_BEFORE, j] = cov[YAW_RATE, j]
     if n == STATES:
-        cov[BOUNCE_BEFORE : BOUNCE_BEFORE + 2, :] = cov[BOUNCE : BOUNCE + 2, :]
-        cov[BOUNCE : BOUNCE + 2, :] = 0.0
+        for i in range(2):
+            for j in range(STATES):
+                cov[BOUNCE_BEFORE + i, j], cov[BOUNCE + i, j] = cov[BOUNCE + i, j], 0.0
 
 
-@njit(cache=True, nogil=True)
+@plain
 def predict(p, m, period, n, w):
     """Prediction of state and covariance over one epoch; the turn is folded into the reference attitude at once."""
     cov = m["covariance"]
     bank, grade, up, r = w["bank"], w["grade"], w["up"], w["r_nv"]
     distance = period * m["speed"]
     rotation_matrix(m["q_nv"], r)
-    up[:] = r[2, :]
+    up[0], up[1], up[2] = r[2, 0], r[2, 1], r[2, 2]
     remember_rows(cov, n)
     remember_rows(cov.T, n)
     if p["filter_constant_over_epoch"]:
@@ -1182,7 +1193,7 @@ def predict(p, m, period, n, w):
             cov[j, i] = cov[i, j]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def predict_force(m, period, share, exact, up, force, jacobian, partials):
     """Specific force in vehicle axes and its Jacobian.
 
@@ -1246,7 +1257,7 @@ def predict_force(m, period, share, exact, up, force, jacobian, partials):
     jacobian[2, SUSPENSION + 1] = -lateral * side
 
 
-@njit(cache=True, nogil=True)
+@plain
 def cross_column(u, i):
     """Column i of [u x]."""
     if i == 0:
@@ -1256,7 +1267,7 @@ def cross_column(u, i):
     return u[1], -u[0], 0.0
 
 
-@njit(cache=True, nogil=True)
+@plain
 def predict_rate(m, period, share, up, rate, jacobian):
     """Angular rate in vehicle axes and its Jacobian: the vehicle turns, the road tilts it, it leans on its springs."""
     speed, turning = m["speed"], m["yaw_rate"] - share * (m["yaw_rate"] - m["yaw_rate_before"])
@@ -1288,7 +1299,7 @@ def predict_rate(m, period, share, up, rate, jacobian):
         jacobian[2, ATTITUDE + i] = turning * z
 
 
-@njit(cache=True, nogil=True)
+@plain
 def add_mounting(vector, h):
     """Columns of the mounting for a vector read in sensor axes and turned into the vehicle's: [vector x]."""
     h[0, MOUNTING + 1] = -vector[2]
@@ -1299,13 +1310,13 @@ def add_mounting(vector, h):
     h[2, MOUNTING + 1] = vector[0]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def turned(r, vector, i):
     """Component i of R times a vector."""
     return r[i, 0] * vector[0] + r[i, 1] * vector[1] + r[i, 2] * vector[2]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def predict_velocity(m, r_nv, z, h):
     """Velocity of the antenna (4.59): the vehicle's, and what its turning adds sideways."""
     speed, rate = m["speed"], m["yaw_rate"]
@@ -1323,7 +1334,7 @@ def predict_velocity(m, r_nv, z, h):
         h[i, ATTITUDE + 2] = y * speed - x * side
 
 
-@njit(cache=True, nogil=True)
+@plain
 def predict_measurements(p, m, e, r_vs, z, h, w):
     """Z = h(x) and its Jacobian: specific force (4.55), velocity (4.59), yaw rate (4.60), angular rate, height.
 
@@ -1359,7 +1370,7 @@ def predict_measurements(p, m, e, r_vs, z, h, w):
     h[HEIGHT, ALTITUDE] = 1.0
 
 
-@njit(cache=True, nogil=True)
+@plain
 def observe(p, m, e, r_vs, y, noise):
     """Fill the measurements y and their standard deviations; infinite = not measured in this epoch."""
     noise[:] = np.inf
@@ -1391,7 +1402,7 @@ def observe(p, m, e, r_vs, y, noise):
         noise[HEIGHT] = p["filter_altitude_noise"] * learnt_noise(p, m, HEIGHTS)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def update(p, m, e, n, w):
     """Update (4.18)-(4.23): scalar after scalar about one point of linearisation, the same as all at once."""
     cov = m["covariance"]
@@ -1436,7 +1447,7 @@ def update(p, m, e, n, w):
         begin_altitude(m, e["altitude"], p["filter_altitude_noise"])
 
 
-@njit(cache=True, nogil=True)
+@plain
 def learn_noise(p, m, which, ratio):
     """Variance of a kind of measurement relative to the usual: receivers smooth, and phones err more than they say.
 
@@ -1451,13 +1462,13 @@ def learn_noise(p, m, which, ratio):
         factor[LATELY] += (ratio - factor[LATELY]) / p["filter_burst_memory"]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def trusted(p, m):
     """The receiver does not err much more than usual just now, as it does between houses."""
     return m["noise_factor"][LATELY] < p["settling_doubt"] * max(m["noise_factor"][VELOCITIES], 1.0)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def learnt_noise(p, m, which):
     """Factor of the standard deviation: never less than the usual."""
     factor = max(m["noise_factor"][which], 1.0)
@@ -1466,7 +1477,7 @@ def learnt_noise(p, m, which):
     return math.sqrt(min(factor, p["filter_max_noise_factor"] ** 2))
 
 
-@njit(cache=True, nogil=True)
+@plain
 def learn_road(p, m, distance, w):
     """Variance of the road's bank and grade: the mean square of their estimates and uncertainties (EM)."""
     share = min(distance / p["filter_road_memory"], 1.0)
@@ -1479,7 +1490,7 @@ def learn_road(p, m, distance, w):
         m["road_variance"][axis] = min(max(variance, p["filter_min_road_sigma"] ** 2), p["filter_max_road_sigma"] ** 2)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def fold(p, m, dx, w):
     """Fold the error state into the references and reset it (4.29), (4.30); the speed stays positive."""
     m["speed"] = max(m["speed"] + dx[SPEED], 0.0)
@@ -1507,7 +1518,7 @@ def fold(p, m, dx, w):
     m["latency"] = min(max(m["latency"] + dx[LATENCY], 0.0), longest)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def start_where_possible(p, m, a, e, w):
     """Start the filter or its motion where it is not running; True when there is a step to make already."""
     heading_known = e["moving"] and math.isfinite(e["course"])
@@ -1536,7 +1547,7 @@ def start_where_possible(p, m, a, e, w):
     return False
 
 
-@njit(cache=True, nogil=True)
+@plain
 def step_filter(p, c, m, a, e, w):
     """One epoch: start where it can be started, else predict and update; True when the filter made a step."""
     if not e["usable"]:
@@ -1561,7 +1572,7 @@ def step_filter(p, c, m, a, e, w):
 # ----------------------------------------------------------------------------------- settling, verification, change
 
 
-@njit(cache=True, nogil=True)
+@plain
 def noise_ratio(p, a):
     """How much more than usual the coarse alignment's residual is, at least 1: poor receivers, phones, loose roads.
 
@@ -1570,7 +1581,7 @@ def noise_ratio(p, a):
     return max(a["noise_density"] / (p["coarse_min_noise"] ** 2 * p["coarse_correlation_time"]), 1.0)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def mounting_sigma(p, covariance, offset, ratio, sigma):
     """1 sigma about the vehicle axes, with what the model leaves out added in square."""
     for i in range(3):
@@ -1578,7 +1589,7 @@ def mounting_sigma(p, covariance, offset, ratio, sigma):
         sigma[i] = min(sigma[i], math.pi)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def move_average(p, s, q, period, w):
     """Moving average (5.4) over the last n epochs, signs aligned; gives how fast it turns, rad/s."""
     size = s["ring"].shape[0]
@@ -1604,15 +1615,17 @@ def move_average(p, s, q, period, w):
             mean[i] += s["ring"][(head - back) % size, i]
     norm = math.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2 + mean[3] ** 2)
     sign = -1.0 if mean[0] < 0 else 1.0
-    mean *= sign / norm
+    for i in range(4):
+        mean[i] *= sign / norm
     difference(mean, s["average"], step)
-    s["average"][:] = mean
+    for i in range(4):
+        s["average"][i] = mean[i]
     if used < wanted:
         return np.inf
     return math.sqrt(step[0] ** 2 + step[1] ** 2 + step[2] ** 2) / period
 
 
-@njit(cache=True, nogil=True)
+@plain
 def second_opinion(p, m, a, w):
     """Filter and coarse alignment agree, within their sigmas and within an angle."""
     if not math.isfinite(a["solved_time"]):
@@ -1627,7 +1640,7 @@ def second_opinion(p, m, a, w):
     return near and mahalanobis(d, total) < 3 * p["settling_second_opinion_sigmas"] ** 2
 
 
-@njit(cache=True, nogil=True)
+@plain
 def settle(p, s, m, a, e, sigma, w):
     """STABLE and RELIABLE."""
     s["stable"] = move_average(p, s, m["q_vs"], e["period"], w) < p["settling_stable_rate"]
@@ -1643,7 +1656,7 @@ def settle(p, s, m, a, e, sigma, w):
     s["reliable"] = informed and excited and s["agrees"] and s["right_handed"] and trusted(p, m)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def soft_start(s):
     """Soft initialisation (thesis 6.2): the booleans are reset, the filter goes on."""
     s["stable"] = False
@@ -1651,7 +1664,7 @@ def soft_start(s):
     s["count"] = 0
 
 
-@njit(cache=True, nogil=True)
+@making
 def start_verification(v, s, m, sigma):
     """Save the candidate and start the drive test."""
     v["state"] = 1
@@ -1671,7 +1684,7 @@ def start_verification(v, s, m, sigma):
     soft_start(s)
 
 
-@njit(cache=True, nogil=True)
+@making
 def drive_test(p, v, m, e):
     """Integrate specific force against the GPS (5.6); True when the time is up.
 
@@ -1710,13 +1723,13 @@ def drive_test(p, v, m, e):
     return v["elapsed"] >= p["verification_duration"]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def drive_error(v, m, q, bias):
     """Speed error after the test under a mounting."""
     return abs(drive_departure(v, m, q, bias))
 
 
-@njit(cache=True, nogil=True)
+@making
 def drive_departure(v, m, q, bias):
     """Speed by the sensor less that by the GPS: work of the forward specific force less the energy gained.
 
@@ -1732,7 +1745,7 @@ def drive_departure(v, m, q, bias):
     return excess * v["elapsed"] / max(v["distance"], 1e-9)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def tell_speed(p, v, m, e, elapsed):
     """Tell the speed by the sensor: once in each second of driving tested, of which `elapsed` were before, and last."""
     begins, ends = elapsed == 0.0, v["state"] != 1
@@ -1743,7 +1756,7 @@ def tell_speed(p, v, m, e, elapsed):
         e["test_begins"] = begins
 
 
-@njit(cache=True, nogil=True)
+@plain
 def drive_limit(p, v, m):
     """Largest speed error that passes: t the limit, in square, what the altitude may be wrong by (2 sigma) is added."""
     variance = p["filter_altitude_drift"] * v["elapsed"] + p["filter_altitude_noise"] ** 2
@@ -1754,7 +1767,7 @@ def drive_limit(p, v, m):
     return math.sqrt(p["verification_limit"] ** 2 + min(slack, p["verification_limit"]) ** 2)
 
 
-@njit(cache=True, nogil=True)
+@making
 def confirm(s, v, t):
     """Keep the verified mounting."""
     s["confirmed"] = True
@@ -1768,7 +1781,7 @@ def confirm(s, v, t):
     s["mount_elapsed"] = v["elapsed"]
 
 
-@njit(cache=True, nogil=True)
+@making
 def begin_window(p, g, mekf, s):
     """Let the challenger begin anew: it knows what the filter knows, but nothing of the mounting.
 
@@ -1793,7 +1806,7 @@ def begin_window(p, g, mekf, s):
     g["excitation"] = 0.0
 
 
-@njit(cache=True, nogil=True)
+@making
 def suspect(p, g, a, n, e):
     """Let the challenger begin from where it is, knowing nothing else.
 
@@ -1815,7 +1828,7 @@ def suspect(p, g, a, n, e):
     g["excitation"] = 0.0
 
 
-@njit(cache=True, nogil=True)
+@making
 def look(p, g, n, ratio):
     """Squared Mahalanobis distance of the challenger's mounting from the reference."""
     d, total = np.empty(3), np.empty((3, 3))
@@ -1828,7 +1841,7 @@ def look(p, g, n, ratio):
     return mahalanobis(d, total)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def keep_evidence(g, t, distance):
     """Append a look to the series that an alert shows."""
     size = g["series"].shape[0]
@@ -1838,7 +1851,7 @@ def keep_evidence(g, t, distance):
     g["series"][g["series_head"], 1] = min(distance, MOST_EVIDENCE)
 
 
-@njit(cache=True, nogil=True)
+@making
 def judge(p, g, a, n, s, e, distance):
     """Let a suspicious challenger decide, acquit, or begin anew; True when it has decided."""
     sure = n["refined"] and largest_sigma(mounting_covariance(n)) < p["change_sure_sigma"]
@@ -1857,7 +1870,7 @@ def judge(p, g, a, n, s, e, distance):
     return False
 
 
-@njit(cache=True, nogil=True)
+@plain
 def watch_for_change(p, c, g, mekf, a, s, e, w):
     """Sequential test of the confirmed mounting by a challenger; True when the device has moved.
 
@@ -1891,7 +1904,7 @@ def watch_for_change(p, c, g, mekf, a, s, e, w):
     return False
 
 
-@njit(cache=True, nogil=True)
+@plain
 def begin_again(mekf, s, v, g):
     """After an orientation change: the challenger becomes the filter, everything else starts anew."""
     mekf[0] = mekf[1]
@@ -1908,7 +1921,7 @@ def begin_again(mekf, s, v, g):
     g["series_count"] = 0
 
 
-@njit(cache=True, nogil=True)
+@plain
 def write_event(events, count, t, code, reason):
     """Append a row: t, code, reason; what follows is nan: quaternion, sigma, elapsed, error, limit, turn, since."""
     row = events[count]
@@ -1919,7 +1932,7 @@ def write_event(events, count, t, code, reason):
     return count + 1
 
 
-@njit(cache=True, nogil=True)
+@plain
 def write_mounting(row, q, sigma):
     """Fill in the mounting an event is about."""
     for i in range(4):
@@ -1928,7 +1941,7 @@ def write_mounting(row, q, sigma):
         row[7 + i] = sigma[i]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def write_test(events, count, t, code, v, reason):
     """Append an event of the drive test."""
     row = events[count]
@@ -1940,7 +1953,7 @@ def write_test(events, count, t, code, v, reason):
     return count
 
 
-@njit(cache=True, nogil=True)
+@making
 def write_change(p, a, events, evidence, count, t, n, s, g):
     """Append an orientation change: the new mounting, the turn from the confirmed one, since when, and the evidence."""
     row, sigma = events[count], np.empty(3)
@@ -1953,7 +1966,7 @@ def write_change(p, a, events, evidence, count, t, n, s, g):
     return count
 
 
-@njit(cache=True, nogil=True)
+@making
 def write_evidence(evidence, count, g):
     """Copy the series, oldest look first, the rest nan."""
     size = g["series"].shape[0]
@@ -1963,7 +1976,7 @@ def write_evidence(evidence, count, g):
         evidence[count, i, :] = g["series"][(g["series_head"] - back) % size, :]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def excite(p, s, g, e, k):
     """Sum the squared horizontal acceleration that stands out from the noise of the fixes."""
     noise = 9 * (p["filter_speed_noise"] / e["period"]) ** 2
@@ -1976,7 +1989,7 @@ def excite(p, s, g, e, k):
     g["quiet"] = 0.0 if forward + lateral > 0 else g["quiet"] + e["period"]
 
 
-@njit(cache=True, nogil=True)
+@making
 def judge_test(p, s, v, m):
     """Reason for which the finished test fails, REASON_NONE when it passes.
 
@@ -1995,13 +2008,13 @@ def judge_test(p, s, v, m):
     return REASON_NONE
 
 
-@njit(cache=True, nogil=True)
+@plain
 def sure(p, sigma):
     """The estimate is good enough to be confirmed."""
     return max(sigma[0], sigma[1]) < p["settling_tilt_sigma"] and sigma[2] < p["settling_yaw_sigma"]
 
 
-@njit(cache=True, nogil=True)
+@making
 def verify(p, s, v, m, e, sigma, events, count):
     """Carry the running drive test on and decide when its time is up, and the estimate good enough."""
     if not drive_test(p, v, m, e):
@@ -2029,7 +2042,7 @@ def verify(p, s, v, m, e, sigma, events, count):
     return write_test(events, count, e["t"], CONFIRMED, v, REASON_NONE)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def recover_filter(p, m, a, s, d):
     """A filter far from a good second opinion, in angle or latency, has lost its way: it starts again from there."""
     good = math.isfinite(a["solved_time"]) and largest_sigma(a["covariance"]) < p["filter_recover_sigma"]
@@ -2045,7 +2058,7 @@ def recover_filter(p, m, a, s, d):
         soft_start(s)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def watch_axes(p, c, f, e):
     """Axes that repeat one value in motion while another moves, and readings at the end of the range."""
     period = e["period"]
@@ -2064,7 +2077,7 @@ def watch_axes(p, c, f, e):
             e["usable"] = False
 
 
-@njit(cache=True, nogil=True)
+@plain
 def report_fault(p, f, which, holds, since, events, evidence, count):
     """Report a fault when it begins; it may be reported again once it was over."""
     bit = 1 << which
@@ -2082,7 +2095,7 @@ def report_fault(p, f, which, holds, since, events, evidence, count):
     return count
 
 
-@njit(cache=True, nogil=True)
+@plain
 def find_faults(p, c, a, f, e, events, evidence, count):
     """Faults of the sensor: mirrored axes, a stuck axis, readings at the end of the range."""
     watch_axes(p, c, f, e)
@@ -2100,7 +2113,7 @@ def find_faults(p, c, a, f, e, events, evidence, count):
     return report_fault(p, f, SATURATED, saturated, np.nan, events, evidence, count)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def watch_looseness(p, f, g, t, changed, moved_on, events, evidence, count):
     """A device whose mounting changes again and again is loose: each change counts, and fades with the hours."""
     if changed or moved_on:
@@ -2117,7 +2130,7 @@ def watch_looseness(p, f, g, t, changed, moved_on, events, evidence, count):
     return count
 
 
-@njit(cache=True, nogil=True)
+@plain
 def align_coarsely(p, c, a, x, s, g, e, w):
     """Feed the coarse alignment with the epochs in motion."""
     if not (e["usable"] and e["moving"] and math.isfinite(e["yaw_rate"])):
@@ -2129,7 +2142,7 @@ def align_coarsely(p, c, a, x, s, g, e, w):
         excite(p, s, g, x, k)
 
 
-@njit(cache=True, nogil=True)
+@plain
 def process_epoch(p, c, a, x, mekf, s, v, g, f, e, w, events, evidence, count):
     """All stages in order for one epoch; gives the number of events so far."""
     m, sigma = mekf[0], w["sigma"]
@@ -2159,7 +2172,7 @@ def process_epoch(p, c, a, x, mekf, s, v, g, f, e, w, events, evidence, count):
 # ------------------------------------------------------------------------------------------------------- reporting
 
 
-@njit(cache=True, nogil=True)
+@plain
 def current_stage(c, m, s, v):
     """Stage as in `events.Stage`."""
     if s["confirmed"]:
@@ -2173,7 +2186,7 @@ def current_stage(c, m, s, v):
     return 0
 
 
-@njit(cache=True, nogil=True)
+@plain
 def current_needs(p, c, a, m, s, sigma, known):
     """Missing information as in `events.Needs`."""
     if not math.isfinite(c["t"]):
@@ -2198,7 +2211,7 @@ def current_needs(p, c, a, m, s, sigma, known):
     return needs
 
 
-@njit(cache=True, nogil=True)
+@making
 def current_estimate(p, a, m, q, sigma):
     """Quaternion and sigma of the filter, else of the coarse alignment; False when there is none."""
     if m["running"]:
@@ -2212,7 +2225,7 @@ def current_estimate(p, a, m, q, sigma):
     return math.isfinite(a["solved_time"]) and largest_sigma(a["covariance"]) < p["coarse_report_sigma"]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def current_progress(p, c, m, s, v, sigma, known):
     """Share of the way done, 0..1, from sigma and the test; never falls but where it is reset."""
     now = 0.0
@@ -2231,7 +2244,7 @@ def current_progress(p, c, m, s, v, sigma, known):
     return s["progress"]
 
 
-@njit(cache=True, nogil=True)
+@plain
 def describe(p, c, a, m, s, v, row):
     """Write t, quaternion, sigma, stage, needs, stable, reliable, progress as they are; True with an estimate."""
     q, sigma = row[1:5], row[5:8]
@@ -2245,7 +2258,7 @@ def describe(p, c, a, m, s, v, row):
     return known
 
 
-@njit(cache=True, nogil=True)
+@plain
 def report(p, c, a, m, s, v, rows, count):
     """Append a row of history when the interval has passed and there is an estimate."""
     if c["t"] < c["next_report"]:
@@ -2255,7 +2268,7 @@ def report(p, c, a, m, s, v, rows, count):
     return count + 1 if describe(p, c, a, m, s, v, rows[count]) else count
 
 
-@njit(cache=True, nogil=True)
+@plain
 def write_speed(e, speeds, count):
     """Append the speeds of the drive test at the end of an epoch, when they are told."""
     if not math.isfinite(e["tested_speed"]):
@@ -2268,7 +2281,7 @@ def write_speed(e, speeds, count):
     return count + 1
 
 
-@njit(cache=True, nogil=True)
+@plain
 def run(
     params, clock, coarse, merged, mekf, settling, verification, change, faults, epochs, works,
     t, f_s, w_s, fix_row, fix_valid, fixes, rows, events, evidence, speeds, counts,
