@@ -5,8 +5,8 @@ layouts and parameters arrive as argument types. Records are explained in `state
 with its equations in `docs/method.md`. The order here is the order of the flow chart (thesis 6.2).
 
 Abbreviations: `p` parameters, `c` clock, `a` coarse alignment (accumulators), `m` filter, `s` settling, `v`
-verification, `g` change; `e` the epoch at hand, `x` the longer one of the coarse alignment; `w`
-scratch arrays.
+verification, `g` change; `e` the epoch at hand, `x` the longer one of the coarse alignment;
+`w` scratch arrays.
 """
 
 import math

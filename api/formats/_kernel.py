@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 OPTIONS: Any = {"cache": True, "nogil": True, "_nrt": False}
-"""The last: who holds the arrays is not counted, which would take a third of the time; no array is made here."""
+"""The last: who holds the arrays is not counted, which would take a fifth of the time; no array is made here."""
 
 ODD = -1
 """instead of a number of rows: there is something this reader leaves to a more patient one"""

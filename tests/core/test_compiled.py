@@ -7,14 +7,13 @@ import pytest
 from numba.core.runtime.nrt import rtsys
 
 from core import DEFAULT, advance, initial_state
-from tests.core.drives import UNCOMPILED, drive
+from tests.core.drives import drive
 
 PER_EPOCH = 2
 """arrays made, at most: those of the coarse alignment's solutions and of the drive test; it was 38 once"""
 
 
 @pytest.mark.compiled
-@pytest.mark.skipif(UNCOMPILED, reason="nothing is compiled")
 @pytest.mark.parametrize("name", ["city", "city without gyro"])
 def test_an_epoch_makes_hardly_any_arrays(name: str) -> None:
     samples = drive(name).samples
