@@ -1404,6 +1404,28 @@ def observe(p, m, e, r_vs, y, noise):
 
 
 @plain
+def times_columns(cov, row, n, ph):
+    """P times a row of the Jacobian; two columns at once, since to go through `ph` takes longer than to add."""
+    for i in range(n):
+        ph[i] = 0.0
+    other = -1
+    for j in range(n):
+        if row[j] == 0.0:
+            continue
+        if other < 0:
+            other = j
+            continue
+        one, two = row[other], row[j]
+        for i in range(n):
+            ph[i] += one * cov[other, i] + two * cov[j, i]
+        other = -1
+    if other >= 0:
+        one = row[other]
+        for i in range(n):
+            ph[i] += one * cov[other, i]
+
+
+@plain
 def update(p, m, e, n, w):
     """Update (4.18)-(4.23): scalar after scalar about one point of linearisation, the same as all at once."""
     cov = m["covariance"]
@@ -1419,16 +1441,12 @@ def update(p, m, e, n, w):
     for row in range(MEASUREMENTS):
         if not math.isfinite(noise[row]):
             continue
-        innovation = y[row] - z[row]
-        variance = 0.0
-        ph[:] = 0.0
+        times_columns(cov, h[row], n, ph)
+        innovation, variance = y[row] - z[row], 0.0
         for j in range(n):
             if h[row, j] != 0.0:
                 innovation -= h[row, j] * dx[j]
-                for i in range(n):
-                    ph[i] += h[row, j] * cov[j, i]
-        for j in range(n):
-            variance += h[row, j] * ph[j]
+                variance += h[row, j] * ph[j]
         total = variance + noise[row] ** 2
         if innovation * innovation > p["filter_gate"] ** 2 * total:
             total = innovation * innovation / p["filter_gate"] ** 2
@@ -1438,11 +1456,14 @@ def update(p, m, e, n, w):
             learn_noise(p, m, HEIGHTS, (innovation * innovation - variance) / p["filter_altitude_noise"] ** 2)
         elif row == FORCE + 2:  # upright: driving hides the noise of the others
             learn_noise(p, m, FORCES, (innovation * innovation - variance) / p["filter_accelerometer_noise"] ** 2)
-        scale = 1.0 / total
+        scale = 1.0 / math.sqrt(total)
         for i in range(n):
+            ph[i] *= scale
             dx[i] += ph[i] * innovation * scale
+        for i in range(n):
+            part = ph[i]
             for j in range(n):
-                cov[i, j] -= ph[i] * ph[j] * scale  # this order of factors keeps the matrix exactly symmetric
+                cov[i, j] -= part * ph[j]  # a square, which keeps the matrix exactly symmetric
     fold(p, m, dx, w)
     if not math.isfinite(m["altitude"]) and math.isfinite(e["altitude"]) and math.isfinite(p["filter_altitude_noise"]):
         begin_altitude(m, e["altitude"], p["filter_altitude_noise"])
@@ -2257,6 +2278,12 @@ def describe(p, c, a, m, s, v, row):
     row[11] = s["reliable"]
     row[12] = current_progress(p, c, m, s, v, sigma, known)
     return known
+
+
+@plain
+def stand(params, clock, coarse, mekf, settling, verification, row):
+    """`describe` for Python, from which arrays come in many times as fast as records."""
+    return describe(params[0], clock[0], coarse[0], mekf[0], settling[0], verification[0], row)
 
 
 @plain

@@ -146,15 +146,9 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
 def status(params: Parameters, state: State) -> Status:
     """Say where the installation stands."""
     row = np.zeros(_ROW)
-    known = _kernel.describe(
-        as_record(params)[0],
-        independent(state.clock.tobytes(), state.clock.dtype)[0],
-        state.coarse[0],
-        state.filter[0],
-        independent(state.settling.tobytes(), state.settling.dtype)[0],
-        state.verification[0],
-        row,
-    )
+    clock = independent(state.clock.tobytes(), state.clock.dtype)
+    settling = independent(state.settling.tobytes(), state.settling.dtype)
+    known = _kernel.stand(as_record(params), clock, state.coarse, state.filter, settling, state.verification, row)
     estimate = Estimate(float(row[0]), row[1:5].copy(), row[5:8].copy(), bool(row[10]), bool(row[11]))
     return Status(
         stage=Stage(int(row[8])),
