@@ -235,8 +235,9 @@ def test_last_use_is_written_at_the_end(settings: Settings, clock: Clock, databa
     assert last_used(database, "admin") == clock()
 
 
-def test_many_uses_are_written_in_small_transactions(client: TestClient, clock: Clock, database: Database) -> None:
-    context: Context = client.app_state["context"]
+def test_many_uses_are_written_in_small_transactions(settings: Settings, clock: Clock, database: Database) -> None:
+    context = Context.make(settings, clock)  # of no service, whose housekeeping would write some of them
+    startup.prepare(context)
     admin = last_key(database)
     for key_pk in (*range(10_000, 10_000 + 2 * AT_ONCE), admin):
         context.uses.mark(key_pk, clock())
@@ -245,6 +246,7 @@ def test_many_uses_are_written_in_small_transactions(client: TestClient, clock: 
     assert last_used(database, "admin") is None
     assert not housekeeping.write_uses(context)
     assert last_used(database, "admin") == clock()
+    context.database.close()
 
 
 def last_key(database: Database) -> int:
