@@ -15,6 +15,13 @@ READS_ALL = ("Seq Scan on", "SCAN ")
 EXPLAINED = ("SELECT", "INSERT", "UPDATE", "DELETE", "WITH")
 Statement = tuple[str, Any]
 """its text, and the values of its parameters"""
+WAYS: tuple[dict[str, int], ...] = (
+    {},  # a filter begins the search
+    {"FEW": 0},  # it is made a set of, and a text is looked up where another filter leaves few devices
+    {"FEW": 0, "SOME": 0},  # a text is made a set of too
+    {"FEW": 0, "SOME": 0, "MANY": 0},  # everything is looked up
+)
+"""Numbers of `storage.device_lists`, so that few devices are found as many are."""
 
 
 @contextmanager

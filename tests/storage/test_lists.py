@@ -14,6 +14,7 @@ from storage.database import Database, WriteSession
 from storage.device_lists import Filter, Place
 from storage.installations import Installation
 from storage.migrate import upgrade
+from tests.plans import WAYS
 
 NOW = datetime(2024, 5, 6, 7, 8, 9, tzinfo=UTC)
 STAGES = ("waiting", "confirmed")
@@ -33,8 +34,6 @@ NAMES = (
     "𝐁ox",
 )
 """Also some that are the same without regard to case, longer then, or beyond 16 bits."""
-MODES = ((device_lists.FEW, device_lists.MANY), (0, device_lists.MANY), (0, 0))
-"""FEW and MANY so that every filter begins the search, is made a set of, or is looked up"""
 
 
 class Known(NamedTuple):
@@ -86,11 +85,11 @@ def listed(database: Database, limit: int, sort: str = "id", **filters: Any) -> 
         after = Place(found[-1].id, key)
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("way", WAYS)
 def test_every_combination_of_filters(
-    tables: Database, fleet: list[Known], mode: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+    tables: Database, fleet: list[Known], way: dict[str, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    _use(mode, monkeypatch)
+    _use(way, monkeypatch)
     wanted: Any = product(
         (None, "box 1", "äÖ", "_the%", "nowhere"),
         (None, *STAGES),
@@ -105,8 +104,8 @@ def test_every_combination_of_filters(
         assert (len(found), set(found)) == (len(expected), expected), filters
 
 
-def _use(mode: tuple[int, int], monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, number in zip(("FEW", "MANY"), mode, strict=True):
+def _use(way: dict[str, int], monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, number in way.items():
         monkeypatch.setattr(device_lists, name, number)
 
 
@@ -121,13 +120,13 @@ def _matches(known: Known, wanted: Filter) -> bool:
     )
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("limit", [7, 500])
 def test_every_order_of_every_page(
-    tables: Database, fleet: list[Known], limit: int, mode: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+    tables: Database, fleet: list[Known], limit: int, way: dict[str, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The same on every database, and the same turned round, but those that never sent are last."""
-    _use(mode, monkeypatch)
+    _use(way, monkeypatch)
     by_name = [known.id for known in sorted(fleet, key=lambda known: (known.name.casefold(), known.id))]
     sent = [(known.last_data_at, known.id) for known in fleet if known.last_data_at is not None]
     never = [known.id for known in fleet if known.last_data_at is None]
