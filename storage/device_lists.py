@@ -2,8 +2,8 @@
 
 A filter names a set of devices. One of a few begins the search; one of many is made once, and each device in the
 order's turn is looked up in it; of most devices, each one's belonging is looked up where it is kept, and so is a text
-where the other filters leave not many. So a page never
-takes much longer than going through an index of all devices, wherever in the order those are that a filter names.
+where the other filters leave not many. So a page never takes much longer than going through an index of all devices,
+wherever in the order those are that a filter names.
 """
 
 from collections.abc import Iterator
