@@ -51,7 +51,7 @@ DURATION = Histogram("livella_http_request_seconds", "Time of a request.", ["rou
 DATABASE_ERRORS = Counter("livella_database_errors", "Errors of the database.", ["kind"], registry=_own)
 
 
-LAPS = {stage: STAGES.labels(stage) for stage in ("parse", "rehearse", "wait", "store", "commit")}
+LAPS = {stage: STAGES.labels(stage) for stage in ("parse", "foresee", "wait", "store", "commit")}
 
 
 class _OfThread(threading.local):

@@ -61,16 +61,8 @@ class Prepared:
 
     def rows(self, connection: Connection, values: dict[str, Any]) -> Sequence[Sequence[Any]]:
         """Run it in the connection's transaction and give the rows, if it gives any."""
-        return self.shaped(connection, values, self.found(connection, values))
-
-    def found(self, connection: Connection, values: dict[str, Any]) -> list[Any]:
-        """Run it and give the rows as the driver has them."""
         form = self.translated(connection, values)
-        return execute(connection, form.sql, form.bind(values), reads=self.table is None)
-
-    def shaped(self, connection: Connection, values: dict[str, Any], found: list[Any]) -> list[Sequence[Any]]:
-        """Give rows as their columns' types have them."""
-        form = self.translated(connection, values)
+        found = execute(connection, form.sql, form.bind(values), reads=self.table is None)
         return [form.shape(row) for row in found]
 
     def translated(self, connection: Connection, values: dict[str, Any]) -> _Translated:

@@ -22,9 +22,9 @@ from api.services import (
     speed_trace,
     watching,
 )
-from api.services.advancing import advance, corrected
 from api.services.context import Context
 from api.services.errors import UNKNOWN_DEVICE, NotFoundError, NotStillError, UnusableError
+from api.services.foresight import Beginning, Foresight, advance, detect
 from api.services.speed_trace import Trace
 from core.motion.events import MotionEvent
 from storage import installations, motion_events, mounts, sessions, standing
@@ -54,6 +54,7 @@ class Calibration:
         self.device_id = device_id
         self.row = row
         self.now = context.clock()
+        self.foresight: Foresight | None = None
         self._standing: Standing | None = None
         """what was read of the device at the beginning; None: nothing, or it may have changed"""
         self._others = 0
@@ -119,6 +120,8 @@ class Calibration:
     def _snapshot(self) -> bytes | None:
         if self._state is None:
             return self.row.snapshot
+        if self.foresight is not None and self._state is self.foresight.state:
+            return self.foresight.snapshot
         return core.encode(self._state)
 
     def begin(self, session: Session) -> None:
@@ -198,6 +201,8 @@ class Calibration:
 
     def _advance(self, reading: Reading) -> tuple[core.State, core.Outcome]:
         correction = self.row.accelerometer_calibration
+        if self.foresight is not None and self.foresight.holds(reading, self._snapshot(), correction):
+            return self.foresight.state, self.foresight.outcome
         return advance(self.context.params, correction, self.state, reading.samples)
 
     def _record(self, session: Session, reading: Reading, outcome: core.Outcome, received_at: datetime) -> None:
@@ -229,9 +234,11 @@ class Calibration:
         self, session: Session, seq: int, samples: core.Samples, outcome: core.Outcome, mount: Mount | None
     ) -> tuple[MotionEvent, ...]:
         """Look for what happened to the vehicle; `mount` is the current one before the chunk."""
-        q_vs = mount.quaternion if mount is not None and mount.in_force else None
-        samples = corrected(self.row.accelerometer_calibration, samples)
-        state, found = detecting.detect(self.row.motion, q_vs, outcome.events, samples)
+        beginning, foresight = Beginning.of(self.row, mount), self.foresight
+        if foresight is not None and outcome is foresight.outcome and beginning == foresight.beginning:
+            state, found = foresight.detection
+        else:
+            state, found = detect(beginning, self.row.accelerometer_calibration, outcome, samples)
         self.row = self.row._replace(motion=state)
         newest = mounts.current(self.tx, self.row.device_pk) if found else mount
         confirmed = sum(event.kind is core.EventKind.CONFIRMED for event in outcome.events)

@@ -22,6 +22,7 @@ from api.services.errors import (
     SessionEndedError,
     UnusableError,
 )
+from api.services.foresight import Foresight, pack
 from storage import chunks, raw_chunks, sessions
 from storage.chunks import APPLIED, WAITING, Body, Receipt, Waiting
 from storage.database import WriteSession
@@ -39,7 +40,9 @@ class Chunk(NamedTuple):
     body: Body
 
 
-def apply(tx: WriteSession, context: Context, device_id: str, chunk: Chunk, parsed: ParsedLog) -> schemas.Upload:
+def apply(
+    tx: WriteSession, context: Context, device_id: str, chunk: Chunk, parsed: ParsedLog, foresight: Foresight | None
+) -> schemas.Upload:
     """Take in a chunk that was read: applied exactly once if it was its turn, kept if it is ahead.
 
     Raises
@@ -52,6 +55,7 @@ def apply(tx: WriteSession, context: Context, device_id: str, chunk: Chunk, pars
         no such device.
     """
     calibration = Calibration.open(tx, context, device_id)
+    calibration.foresight = foresight
     session = calibration.find_session(chunk.session)
     # one whose turn it is cannot have come in before: it would have been applied
     known = None if chunk.seq == session.next_seq else chunks.find(tx, session.pk, chunk.seq)
@@ -82,7 +86,7 @@ def same(known: Receipt, parsed: ParsedLog) -> Receipt:
 def take(calibration: Calibration, session: Session, chunk: Chunk, parsed: ParsedLog) -> Receipt:
     """Take in a new chunk: apply it, and what waited for it, if it is its turn; else let it wait."""
     _refuse_late(calibration, session, chunk.seq)
-    reading = parsed.samples(session.context)
+    reading = _read(calibration, session, parsed)
     receipt = _receipt(calibration, session, chunk, parsed.fingerprint.digest, reading)
     if chunk.seq == session.next_seq:
         _enter(calibration, session)
@@ -94,6 +98,13 @@ def take(calibration: Calibration, session: Session, chunk: Chunk, parsed: Parse
     calibration.look_anew()
     catch_up(calibration)  # it may be the one too many that declares the gap
     return chunks.find(calibration.tx, session.pk, chunk.seq) or receipt
+
+
+def _read(calibration: Calibration, session: Session, parsed: ParsedLog) -> Reading:
+    foresight = calibration.foresight
+    if foresight is not None and foresight.session_context == session.context:
+        return foresight.reading
+    return parsed.samples(session.context)
 
 
 def catch_up(calibration: Calibration) -> None:
@@ -215,9 +226,13 @@ def _apply(calibration: Calibration, session: Session, receipt: Receipt, reading
 
 def _keep(calibration: Calibration, receipt: Receipt, reading: Reading) -> None:
     """Keep the samples as they came."""
-    if calibration.context.settings.raw_retention_days == 0:
+    foresight = calibration.foresight
+    if foresight is not None and foresight.reading is reading:
+        content = foresight.raw
+    else:
+        content = pack(calibration.context, reading)
+    if content is None:
         return
-    content = raw.pack(reading.samples)
     device_pk, columns = calibration.row.device_pk, " ".join(raw.names(content))
     span = float(reading.samples.t[0]), float(reading.samples.t[-1])
     chunk = RawChunk(receipt.session_pk, receipt.seq, device_pk, *span, receipt.received_at, columns, content)

@@ -5,18 +5,16 @@ commit. Whether one of them succeeds is nothing to the others.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import copy_context
 from functools import partial
 from typing import NamedTuple
 
 from api import metrics, schemas
-from api.formats import FormatError, ParsedLog
-from api.services import ingest
+from api.formats import ParsedLog
+from api.services import foresight, ingest
 from api.services.context import Context
-from api.services.errors import ServiceError
 from storage.database import ReadSession, WriteSession
-from storage.rehearsal import NotRehearsedError, Rehearsal
 
 
 class Arrival(NamedTuple):
@@ -60,18 +58,21 @@ def receive_together(context: Context, arrivals: Sequence[Arrival]) -> list[Outc
     for upload in uploads:
         upload.attempt(upload.parse)
     if context.database.is_sqlite:  # PostgreSQL locks a single device, and has no time to win
-        _rehearse(context, [upload for upload in uploads if upload.is_open])
+        _foresee(context, [upload for upload in uploads if upload.is_open])
     _store(context, [upload for upload in uploads if upload.is_open])
     context.wake()
     return [upload.told() for upload in uploads]
 
 
-def _rehearse(context: Context, uploads: "Sequence[_Upload]") -> None:
+def _foresee(context: Context, uploads: "Sequence[_Upload]") -> None:
     if not uploads:
         return
-    with _failing_together(uploads), context.database.look() as look:
+    with _failing_together(uploads), context.database.look() as tx:
         for upload in uploads:
-            upload.attempt(partial(upload.rehearse, look))
+            upload.attempt(partial(upload.look_up, tx))
+    for upload in uploads:
+        if upload.is_open:
+            upload.attempt(upload.foresee)
 
 
 def _store(context: Context, uploads: "Sequence[_Upload]") -> None:
@@ -102,7 +103,8 @@ class _Upload:
         self.context = context
         self.device_id, self.chunk, self._within = arrival
         self._watch = metrics.Upload(arrival.chunk.body.content_type)
-        self._rehearsed: tuple[Rehearsal, schemas.Upload] | None = None
+        self._stand: foresight.Stand | None = None
+        self._foresight: foresight.Foresight | None = None
         self._answer: schemas.Upload | None = None
         self._error: Exception | None = None
 
@@ -129,24 +131,23 @@ class _Upload:
         self._parsed = ingest.read(self.context, self.chunk.body)
         self._watch.lap("parse")
 
-    def rehearse(self, look: ReadSession) -> None:
-        """Compute beforehand what will be written; what is wrong with the chunk, the transaction says."""
-        self._watch.start()
-        with suppress(NotRehearsedError, ServiceError, FormatError):
-            rehearsal = Rehearsal(look)
-            self._rehearsed = rehearsal, self._apply(rehearsal)
-        self._watch.lap("rehearse")
+    def look_up(self, tx: ReadSession) -> None:
+        """Find where the device stands."""
+        self._stand = foresight.look_up(tx, self.device_id, self.chunk.session, self.chunk.seq)
+
+    def foresee(self) -> None:
+        """Advance the estimator beforehand."""
+        if self._stand is not None:
+            self._watch.start()
+            self._foresight = foresight.foresee(self.context, self._stand, self._parsed)
+            self._watch.lap("foresee")
 
     def store(self, transaction: Callable[[], AbstractContextManager[WriteSession]]) -> None:
         """Take effect."""
         with transaction() as tx:
             self._watch.lap("wait")
-            rehearsed = self._rehearsed
-            self._answer = rehearsed[1] if rehearsed and rehearsed[0].play(tx) else self._apply(tx)
+            self._answer = ingest.apply(tx, self.context, self.device_id, self.chunk, self._parsed, self._foresight)
             self._watch.lap("store")
-
-    def _apply(self, tx: WriteSession) -> schemas.Upload:
-        return ingest.apply(tx, self.context, self.device_id, self.chunk, self._parsed)
 
     def told(self) -> Outcome:
         """Give what there is to answer, and count it."""

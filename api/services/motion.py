@@ -14,9 +14,9 @@ import numpy as np
 import core
 from api import schemas
 from api.services import kept_samples, presenting
-from api.services.advancing import corrected
 from api.services.context import Context
 from api.services.errors import UNKNOWN_DEVICE, LongSpanError, NotFoundError
+from api.services.foresight import corrected
 from api.services.kept_samples import Span
 from core.motion import DEFAULT, VEHICLES, Motion, Origin, advance, initial_state
 from core.quaternion import Floats

@@ -1,6 +1,7 @@
 """What happened to a vehicle: found under the mounting in force, listed, and told as alerts."""
 
 import math
+from collections.abc import Callable
 from datetime import datetime, timedelta
 from itertools import pairwise
 
@@ -9,7 +10,7 @@ import pytest
 import sqlalchemy as sa
 
 from api.formats.writer import write_native_csv
-from api.services import findings
+from api.services import calibration, findings, foresight
 from core.motion import events as detector
 from core.motion.events import MotionEvent
 from core.simulation_events import manoeuvres
@@ -152,6 +153,28 @@ def test_an_event_found_before_the_device_moved_belongs_to_the_former_mounting(
     moments = [datetime.fromisoformat(event["at"]) for event in found]
     assert moments[0] > confirmed[0] > moments[1] > confirmed[1]
     assert [event["speed_mps"] for event in found] == [None, None]
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_events_are_looked_for_once_and_before_the_lock(
+    api: Api, clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks: list[str] = []
+    for where in (foresight, calibration):
+        monkeypatch.setattr(where, "detect", _noting(foresight.detect, looks, where.__name__))
+    story, device = crashed(), api.add_device()
+    play(device, clock, story.chunks)
+    play(device, clock, story.chunks[:1], "b")
+    assert looks == ["api.services.foresight"] * (len(story.chunks) + 1)
+    assert len(listed(device, kind="impact")) == 1
+
+
+def _noting(detect: Callable[..., object], looks: list[str], where: str) -> Callable[..., object]:
+    def noting(*given: object) -> object:
+        looks.append(where)
+        return detect(*given)
+
+    return noting
 
 
 def test_a_state_that_cannot_be_read_begins_anew(

@@ -99,7 +99,7 @@ def test_nothing_is_timed_twice(api: Api, client: TestClient) -> None:
     timed = ["livella_filter_seconds_sum", "livella_upload_stage_seconds_sum"]
     parts = {key: after[key] - before.get(key, 0.0) for key in after if key[0] in timed}
     taken = {dict(labels).get("stage", "filter") for (_, labels), part in parts.items() if part > 0}
-    assert taken - {"rehearse"} == {"filter", "parse", "wait", "store", "commit"}
+    assert taken - {"foresee"} == {"filter", "parse", "wait", "store", "commit"}
     assert sum(parts.values()) < seconds
 
 
@@ -107,18 +107,18 @@ def test_the_filter_is_taken_out_of_the_lap_that_holds_it() -> None:
     def stage(name: str) -> float:
         return value(figures(metrics.render().decode()), "livella_upload_stage_seconds_sum", stage=name)
 
-    before = stage("rehearse"), stage("store")
+    before = stage("foresee"), stage("store")
     watch = metrics.Upload("text/csv")
     with watch:
         watch.lap("parse")
         with metrics.estimator():
             time.sleep(0.2)
-        watch.lap("rehearse")
+        watch.lap("foresee")
         time.sleep(0.1)
         with metrics.estimator():
             time.sleep(0.2)
         watch.lap("store")
-    assert stage("rehearse") - before[0] < 0.1
+    assert stage("foresee") - before[0] < 0.1
     assert 0.1 <= stage("store") - before[1] < 0.2
 
 

@@ -1,9 +1,7 @@
 """Several chunks taken in at once are to each other as if each had come alone."""
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
 from contextvars import ContextVar
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,16 +10,13 @@ from sqlalchemy import event
 
 from api import schemas
 from api.formats import FormatError, ParsedLog
-from api.services import access, fleet, ingest, intake, startup
-from api.services.auditing import SERVICE
+from api.services import access, fleet, foresight, ingest, intake, startup
 from api.services.context import Context
 from api.services.errors import ConflictError, NotFoundError
 from api.settings import Settings
-from storage import standing
 from storage.chunks import Body
-from storage.database import ReadSession, WriteSession
+from storage.database import ReadSession
 from storage.models import chunks as chunk_table
-from storage.rehearsal import Rehearsal
 from tests.conftest import Clock
 from tests.crashes import crashed
 from tests.drives import remounted
@@ -128,72 +123,16 @@ def test_when_the_commit_fails_none_is_acknowledged_and_all_can_come_again(conte
 def test_a_device_that_cannot_be_looked_up_spoils_nothing_for_the_others(
     context: Context, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    straight = standing.find
+    straight = foresight.look_up
 
-    def find(tx: ReadSession, device_pk: int, session: str) -> standing.Standing | None:
-        if device_pk == 1 and isinstance(tx, Rehearsal):
+    def look_up(tx: ReadSession, device_id: str, session: str, seq: int) -> foresight.Stand | None:
+        if device_id == "a":
             raise ValueError("what is stored of it is damaged")
-        return straight(tx, device_pk, session)
+        return straight(tx, device_id, session, seq)
 
-    monkeypatch.setattr(standing, "find", find)
+    monkeypatch.setattr(foresight, "look_up", look_up)
     outcomes = intake.receive_together(context, [arrival("a", 0), arrival("b", 0), arrival("c", 0)])
     assert [told(outcome) for outcome in outcomes] == ["ValueError", "applied", "applied"]
-
-
-def note_applications(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str]]:
-    """Note in what chunks are applied, and to which device."""
-    straight, noted = ingest.apply, []
-
-    def apply(tx: WriteSession, context: Context, device_id: str, *rest: Any) -> schemas.Upload:
-        noted.append((type(tx).__name__, device_id))
-        return straight(tx, context, device_id, *rest)
-
-    monkeypatch.setattr(ingest, "apply", apply)
-    return noted
-
-
-@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
-def test_what_is_usual_is_computed_before_the_lock(context: Context, monkeypatch: pytest.MonkeyPatch) -> None:
-    intake.receive_together(context, [arrival(name, 0) for name in ("a", "b")])
-    noted = note_applications(monkeypatch)
-    outcomes = intake.receive_together(context, [arrival("a", 1), arrival("b", 1)])
-    outcomes += intake.receive_together(context, [arrival("b", 0)])
-    assert [told(outcome) for outcome in outcomes] == ["applied"] * 3
-    assert noted == [("Rehearsal", "a"), ("Rehearsal", "b"), ("Rehearsal", "b")]
-
-
-@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
-@pytest.mark.parametrize("change", ["restart", "calibrate", "upload"])
-def test_what_changes_before_the_lock_is_seen(context: Context, change: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As if the chunk had been looked at after the change only."""
-    gain = [[1.1, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-    changes: dict[str, Callable[[str], object]] = {
-        "restart": lambda name: fleet.restart(context, name, SERVICE),
-        "calibrate": lambda name: fleet.edit(
-            context, name, {"accelerometer_calibration": {"gain": gain, "offset": [0.0] * 3}}, SERVICE
-        ),
-        "upload": lambda name: intake.receive(context, name, arrival(name, 3).chunk),
-    }
-    for name in ("a", "b"):
-        intake.receive_together(context, [arrival(name, seq) for seq in range(3)])
-    changes[change]("b")
-    last = 3 + (change == "upload")
-    intake.receive(context, "b", arrival("b", last).chunk)
-    straight = context.database.together
-
-    def together() -> AbstractContextManager[Callable[[], AbstractContextManager[WriteSession]]]:
-        monkeypatch.setattr(context.database, "together", straight)
-        changes[change]("a")
-        return straight()
-
-    monkeypatch.setattr(context.database, "together", together)
-    noted = note_applications(monkeypatch)
-    intake.receive(context, "a", arrival("a", last).chunk)
-    assert noted[0] == ("Rehearsal", "a")
-    assert noted[-1] == ("WriteSession", "a")
-    assert shown(context, "a").model_dump(exclude={"device_id", "since"}) == shown(context, "b").model_dump(
-        exclude={"device_id", "since"}
-    )
 
 
 @pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
