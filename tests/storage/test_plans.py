@@ -73,8 +73,8 @@ FILTERS = (
     Filter(q="x", stage="waiting", alert_severity="critical"),
 )
 """of devices"""
-KEYS = ("device_id=?", "device_pk=?", "rowid=?")
-"""by which something of a single device is looked up"""
+KEYS = ("device_id=?", "device_pk=?", "SEARCH devices_1 USING INTEGER PRIMARY KEY (rowid=?)")
+"""by which something of a single device is looked up, the last one its text"""
 LOOKS: dict[str, Callable[[WriteSession], object]] = {
     "counts of alerts": alerts.counts,
     "devices by severity": alerts.devices_by_severity,
