@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, cast
 
-from benchmarks.load_study.pacing import OK, Answer, Plan, due_times
+from benchmarks.load_study.pacing import OK, Answer, Plan, schedule
 
 STATUS = slice(9, 12)
 LENGTH = re.compile(rb"\r\ncontent-length: *(\d+)", re.IGNORECASE)
@@ -197,10 +197,9 @@ class Run:
 
         Gives the s after which it ended: those of the plan, or fewer if there was no hope.
         """
-        schedule = sorted((due, i) for i in range(len(self.devices)) for due in due_times(i, plan))
         self._zero = time.monotonic()
         started, look = False, plan.warm_up + HOPELESS
-        for due, i in schedule:
+        for due, i in schedule(plan):
             if (wait := due - self.now()) > 0:
                 await asyncio.sleep(wait)
             if not started and due >= plan.warm_up:

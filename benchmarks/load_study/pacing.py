@@ -4,6 +4,8 @@ Open loop: a chunk is due when its minute is over, however long the answers befo
 then. A service that stalls is charged with everything that was due meanwhile.
 """
 
+import math
+import random
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
@@ -61,16 +63,16 @@ class Plan(NamedTuple):
         return self._replace(measure=seconds - self.warm_up)
 
 
-def phase(device: int, devices: int, period: float = PERIOD) -> float:
-    """Give the s at which a device's first chunk is due: evenly spread over the period."""
-    return period * device / devices
+def schedule(plan: Plan, period: float = PERIOD) -> list[tuple[float, int]]:
+    """Give when chunks are due in a run, and of which device: evenly spread, the devices in any order, always the same.
 
-
-def due_times(device: int, plan: Plan, period: float = PERIOD) -> list[float]:
-    """Give the times at which a device's chunks are due in a run."""
-    first = phase(device, plan.devices, period)
-    count = max(0, int(np.ceil((plan.seconds - first) / period)))
-    return [first + k * period for k in range(count)]
+    In the order of their numbers they would come as they were registered and connected. A process accepts several
+    connections at a time, so dozens of chunks in a row would go to one process while the other has nothing to do.
+    """
+    order = list(range(plan.devices))
+    random.Random(0).shuffle(order)
+    count = math.ceil(plan.seconds * plan.devices / period)
+    return [(period * place / plan.devices, order[place % plan.devices]) for place in range(count)]
 
 
 def quantiles(latencies: Sequence[float]) -> Latency:

@@ -15,7 +15,7 @@ from benchmarks.load_study.cells import CELLS, NAIVE, Cell, why_not
 from benchmarks.load_study.client import Device
 from benchmarks.load_study.drives import ARROW, CHUNK, CSV
 from benchmarks.load_study.measuring import NotSlowedError, loop, measure
-from benchmarks.load_study.pacing import Answer, Latency, Plan, due_times, errors, measured, next_count, quantiles
+from benchmarks.load_study.pacing import Answer, Latency, Plan, errors, measured, next_count, quantiles, schedule
 from benchmarks.load_study.page import HTTP, WHOLE, assemble, ratios, targets, with_http
 from benchmarks.load_study.processes import TICK, parse
 from benchmarks.load_study.result import Meter, Result, Traffic, conclude, largest_held
@@ -47,7 +47,18 @@ def result(devices: int, p99: float, unanswered: int = 0, wrong: int = 0, cpu: f
 
 
 def test_devices_post_once_a_minute_at_phases_evenly_spread() -> None:
-    assert [due_times(i, PLAN) for i in range(4)] == [[0.0, 60.0], [15.0, 75.0], [30.0], [45.0]]
+    due = schedule(PLAN)
+    assert [at for at, _ in due] == [0.0, 15.0, 30.0, 45.0, 60.0, 75.0]
+    order = [device for _, device in due]
+    assert sorted(order[:4]) == [0, 1, 2, 3]
+    assert order[4:] == order[:2]
+
+
+def test_those_connected_together_do_not_post_together() -> None:
+    order = [device // 100 for _, device in schedule(Plan(3000, 0.0, 60.0))]
+    assert len(order) == 3000
+    assert sum(a == b for a, b in pairwise(order)) < 150  # one in 30 by chance
+    assert order == [device // 100 for _, device in schedule(Plan(3000, 0.0, 60.0))]
 
 
 def test_quantiles_are_values_and_rounded_up() -> None:
