@@ -5,7 +5,6 @@ then. A service that stalls is charged with everything that was due meanwhile.
 """
 
 import math
-import random
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
@@ -69,8 +68,7 @@ def schedule(plan: Plan, period: float = PERIOD) -> list[tuple[float, int]]:
     In the order of their numbers they would come as they were registered and connected. A process accepts several
     connections at a time, so dozens of chunks in a row would go to one process while the other has nothing to do.
     """
-    order = list(range(plan.devices))
-    random.Random(0).shuffle(order)
+    order = np.random.default_rng(0).permutation(plan.devices).tolist()
     count = math.ceil(plan.seconds * plan.devices / period)
     return [(period * place / plan.devices, order[place % plan.devices]) for place in range(count)]
 
