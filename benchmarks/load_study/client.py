@@ -21,7 +21,7 @@ CONNECTING = 100
 """connections that are opened at once"""
 RETRY_AFTER = re.compile(rb"\r\nretry-after: *(\d+)", re.IGNORECASE)
 RECONNECT = 1.0
-"""s until a device whose connection broke tries again"""
+"""s until a device tries again whose connection broke with a chunk under way, or could not be opened"""
 PROBED = 400
 """connections, at most, over which it is asked whether the process at the other end is ready"""
 HOPELESS = 10.0
@@ -83,13 +83,17 @@ class Connection(asyncio.Protocol):
             self._send()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Count what was under way as broken and connect again."""
+        """Count what was under way as broken, and connect again: later then, at once where nothing was under way.
+
+        The service hangs up on who says nothing for a minute after connecting, as those whose first chunk is due last.
+        """
         self.transport = None
         self._told(RECONNECT)
-        if self.busy:
+        broken = self.busy
+        if broken:
             self._answered(0)
         if not self.run.closing:
-            self.run.loop.call_later(RECONNECT, self.run.reconnect, self)
+            self.run.loop.call_later(RECONNECT if broken else 0.0, self.run.reconnect, self)
 
     def post(self, device: Device, due: float) -> None:
         """A chunk is due."""

@@ -1,5 +1,6 @@
 """The load generator: pacing, figures, page, and a small fleet against the real service."""
 
+import asyncio
 import math
 import shutil
 from itertools import pairwise
@@ -10,9 +11,9 @@ import pytest
 
 from api.formats.writer import write_native_csv
 from benchmarks import naive
-from benchmarks.load_study import fleet, service
+from benchmarks.load_study import client, fleet, service
 from benchmarks.load_study.cells import CELLS, NAIVE, Cell, why_not
-from benchmarks.load_study.client import Device
+from benchmarks.load_study.client import Device, Run
 from benchmarks.load_study.drives import ARROW, CHUNK, CSV
 from benchmarks.load_study.measuring import NotSlowedError, loop, measure
 from benchmarks.load_study.pacing import Answer, Latency, Plan, errors, measured, next_count, quantiles, schedule
@@ -59,6 +60,28 @@ def test_those_connected_together_do_not_post_together() -> None:
     assert len(order) == 3000
     assert sum(a == b for a, b in pairwise(order)) < 150  # one in 30 by chance
     assert order == [device // 100 for _, device in schedule(Plan(3000, 0.0, 60.0))]
+
+
+async def _hung_up_on(times: int) -> list[Answer]:
+    """Give the answers of a device that so many times is hung up on before it has sent anything."""
+    seen: asyncio.Queue[None] = asyncio.Queue()
+
+    def hang_up(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        seen.put_nowait(None)
+        writer.close()
+
+    async with await asyncio.start_server(hang_up, "127.0.0.1", 0) as server:
+        run = Run(server.sockets[0].getsockname()[1], [Device("van-1", "key", "session", [], 0)], 1)
+        await run.connect()
+        for _ in range(times):
+            await asyncio.wait_for(seen.get(), 30.0)
+        await run.close()
+    return run.answers
+
+
+def test_who_is_hung_up_on_before_its_first_chunk_connects_again_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(client, "RECONNECT", math.inf)
+    assert asyncio.run(_hung_up_on(3)) == []
 
 
 def test_quantiles_are_values_and_rounded_up() -> None:
