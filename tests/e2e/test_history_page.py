@@ -71,6 +71,15 @@ def middle(page: Page) -> tuple[float, float]:
     return box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"]
 
 
+def rested(page: Page) -> tuple[float, float]:
+    """The same once the chart stands still: a swipe goes on by itself, and what appears above the chart moves it."""
+    before, now = None, middle(page)
+    while now != before:
+        page.wait_for_timeout(300)
+        before, now = now, middle(page)
+    return now
+
+
 def scrolled(page: Page) -> float:
     height: float = page.evaluate("scrollY")
     return height
@@ -144,9 +153,10 @@ def test_fingers_zoom_and_move_and_the_page_still_scrolls(chromium: Browser, add
         fingers.move([(x, y)], [(x, y - 200)])
         page.wait_for_function("height => scrollY > height + 100", arg=height)
         expect(span(page)).to_have_text(whole)
-        x, y = middle(page)
+        x, y = rested(page)
         with changed(span(page)):
             fingers.move([(x - 20, y), (x + 20, y)], [(x - 120, y), (x + 70, y)])
+        x, y = rested(page)
         with changed(span(page)):
             fingers.move([(x, y)], [(x + 90, y)])
         visitor.assert_fits()
