@@ -72,7 +72,8 @@ def middle(page: Page) -> tuple[float, float]:
 
 
 def rested(page: Page) -> tuple[float, float]:
-    """The same once the chart stands still: a swipe goes on by itself, and what appears above the chart moves it."""
+    """The same, clear of the page's head, once it stands still: a swipe goes on by itself, what appears moves it."""
+    page.get_by_role("img", name=CHART).evaluate("chart => chart.scrollIntoView({ block: 'center' })")
     before, now = None, middle(page)
     while now != before:
         page.wait_for_timeout(300)
