@@ -1,4 +1,4 @@
-"""Work that is done in batches: what comes in while one batch is worked on makes the next.
+"""Work that is done in batches: what comes in while one batch is worked on makes the next, or is added to it.
 
 Threads that work on a request each take the interpreter from one another all the time, and under load that costs more
 than it gains. A few threads that take what has gathered go through it undisturbed, and share what a batch needs once.
@@ -21,27 +21,35 @@ class _Waiting(NamedTuple, Generic[Item, Result]):
     loop: asyncio.AbstractEventLoop
 
 
+Another = Callable[[], Item | None]
+"""Adds one more item that has come in to the batch, and gives it; None when there is none, or no place."""
+Work = Callable[[Sequence[Item], Another[Item]], Sequence[Result | Exception]]
+"""Gives for each item, in the order in which they came to it, its result, or the exception that whoever waits for it
+shall see."""
+
+
 class Batches(Generic[Item, Result]):
     """Threads that work through a queue."""
 
-    def __init__(
-        self, work: Callable[[Sequence[Item]], Sequence[Result | Exception]], threads: int, most: int, name: str
-    ) -> None:
+    def __init__(self, work: Work[Item, Result], threads: int, most: int, grown: int, name: str) -> None:
         """Start the threads.
 
         Parameters
         ----------
         work
-            gives for each item its result, or the exception that whoever waits for it shall see
+            what is done with a batch
         threads
             that work at the same time
         most
-            items in a batch
+            items in a batch at first
+        grown
+            items in a batch with those that are added to it
         name
             of the threads
         """
         self._work = work
         self._most = most
+        self._grown = grown
         self._queue: SimpleQueue[_Waiting[Item, Result] | None] = SimpleQueue()
         self._threads = [threading.Thread(target=self._run, name=f"{name}-{i}", daemon=True) for i in range(threads)]
         for thread in self._threads:
@@ -63,25 +71,29 @@ class Batches(Generic[Item, Result]):
 
     def _run(self) -> None:
         while (first := self._queue.get()) is not None:
-            self._finish([first, *self._more()])
+            batch = [first]
+            while self._grow(batch, self._most):
+                continue
+            self._finish(batch)
 
-    def _more(self) -> list[_Waiting[Item, Result]]:
-        """Take what else has gathered."""
-        taken: list[_Waiting[Item, Result]] = []
-        while len(taken) < self._most - 1:
-            try:
-                waiting = self._queue.get_nowait()
-            except Empty:
-                break
-            if waiting is None:
-                self._queue.put(None)  # the end, seen again when this batch is done
-                break
-            taken.append(waiting)
-        return taken
+    def _grow(self, batch: list[_Waiting[Item, Result]], most: int) -> bool:
+        """Take one more that has gathered, tell whether there was one."""
+        if len(batch) >= most:
+            return False
+        with suppress(Empty):
+            waiting = self._queue.get_nowait()
+            if waiting is not None:
+                batch.append(waiting)
+                return True
+            self._queue.put(None)  # the end, seen again when this batch is done
+        return False
 
     def _finish(self, batch: list[_Waiting[Item, Result]]) -> None:
+        def another() -> Item | None:
+            return batch[-1].item if self._grow(batch, self._grown) else None
+
         try:
-            results = self._work([waiting.item for waiting in batch])
+            results = self._work([waiting.item for waiting in batch], another)
         except Exception as error:
             results = [error] * len(batch)
         for loop in {waiting.loop for waiting in batch}:  # it is one, and woken once for all

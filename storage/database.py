@@ -136,15 +136,18 @@ class Database:
             yield tx
 
     @contextmanager
-    def together(self) -> Iterator[Callable[[], AbstractContextManager[WriteSession]]]:
+    def together(
+        self, meanwhile: Callable[[], bool] = lambda: False
+    ) -> Iterator[Callable[[], AbstractContextManager[WriteSession]]]:
         """Give what opens transactions, each on its own whether it takes effect.
 
-        On SQLite all become durable together when the block ends without an error, elsewhere each when it ends.
+        On SQLite all become durable together when the block ends without an error, elsewhere each when it ends. While
+        another process writes there, `meanwhile` is called again and again: some other work, False when there was none.
         """
         if self._group is None:
             yield self.write
             return
-        with self._group.together(BUSY_TIMEOUT) as group:
+        with self._group.together(BUSY_TIMEOUT, meanwhile) as group:
             yield lambda: _write_session(group.member())
 
     def _transaction(self) -> AbstractContextManager[Connection]:

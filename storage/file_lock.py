@@ -8,6 +8,7 @@ lock again before the one that stands there. The system frees both when a proces
 import os
 import sys
 import time
+from collections.abc import Callable
 from contextlib import suppress
 
 with suppress(ImportError):  # no such locks on Windows: SQLite's own have to do
@@ -24,18 +25,21 @@ class FileLock:
         self._path = path if "fcntl" in sys.modules else None
         self._files: tuple[int, int] | None = None
 
-    def acquire(self, seconds: float) -> bool:
-        """Wait for the lock, at most so long; tell whether it is ours."""
+    def acquire(self, seconds: float, meanwhile: Callable[[], bool] = lambda: False) -> bool:
+        """Wait for the lock, at most so long; tell whether it is ours.
+
+        While another has it, `meanwhile` is called again and again: some other work, False when there was none.
+        """
         if self._path is None:
             return True
         if self._files is None:
             self._files = (_open(f"{self._path}-next"), _open(f"{self._path}-turn"))
         head, lock = self._files
         deadline = time.monotonic() + seconds
-        if not _try(head, deadline):
+        if not _try(head, deadline, meanwhile):
             return False
         try:
-            return _try(lock, deadline)
+            return _try(lock, deadline, meanwhile)
         finally:
             fcntl.flock(head, fcntl.LOCK_UN)
 
@@ -55,11 +59,12 @@ def _open(path: str) -> int:
     return os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0), 0o644)
 
 
-def _try(file: int, deadline: float) -> bool:
+def _try(file: int, deadline: float, meanwhile: Callable[[], bool]) -> bool:
     while True:
         with suppress(BlockingIOError):
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             return True
         if time.monotonic() > deadline:
             return False
-        time.sleep(PAUSE)
+        if not meanwhile():
+            time.sleep(PAUSE)

@@ -6,7 +6,7 @@ commit, and a transaction that fails undoes only itself.
 """
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from sqlalchemy.engine import Connection, Engine
@@ -87,11 +87,14 @@ class GroupCommit:
             yield connection
 
     @contextmanager
-    def together(self, seconds: float) -> Iterator[Group]:
-        """Take one turn for several transactions, members of a group, durable when the block ends without an error."""
+    def together(self, seconds: float, meanwhile: Callable[[], bool] = lambda: False) -> Iterator[Group]:
+        """Take one turn for several transactions, members of a group, durable when the block ends without an error.
+
+        `meanwhile` is called while another process has its turn, see `FileLock.acquire`.
+        """
         self._take_turn(seconds)
         try:
-            group = self._group = self._group or self._open(seconds)
+            group = self._group = self._group or self._open(seconds, meanwhile)
             yield group
         finally:
             self._end_turn()
@@ -132,8 +135,8 @@ class GroupCommit:
             self._taken = False
             self._turns.notify()
 
-    def _open(self, seconds: float) -> Group:
-        if not self._lock.acquire(seconds):
+    def _open(self, seconds: float, meanwhile: Callable[[], bool]) -> Group:
+        if not self._lock.acquire(seconds, meanwhile):
             raise BusyError("the database is busy")
         try:
             connection = self._engine.connect()

@@ -1,12 +1,13 @@
 """Uploads."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
 
 from api import schemas
-from api.batches import Batches
+from api.batches import Another, Batches
 from api.dependencies import AnyDevice, Body, CurrentContext, ready
 from api.formats import MEDIA_TYPES
 from api.overload import Gate
@@ -24,7 +25,9 @@ BODY: dict[str, Any] = {
 }
 MAX_SEQ = 2**31 - 2
 AT_ONCE_ON_SQLITE, AT_ONCE = 8, 4
-"""chunks in a batch: the first of them waits for the last, some 10 ms for each"""
+"""chunks in a batch at first: the first of them waits for the last, some 10 ms for each"""
+GROWN = 32
+"""chunks in a batch at most: on SQLite those are added that come in while another process writes"""
 Uploads = Batches[intake.Arrival, Response]
 Course = Literal["clockwise", "anticlockwise", "auto"]
 
@@ -63,11 +66,13 @@ async def upload_chunk(
 def open_uploads(context: Context) -> Uploads:
     """Start the threads that work on uploads: on SQLite, where one can write, a single one."""
     threads, most = (1, AT_ONCE_ON_SQLITE) if context.database.is_sqlite else (context.settings.upload_threads, AT_ONCE)
-    return Batches(lambda arrivals: _answers(context, arrivals), threads, most, "uploads")
+    return Batches(partial(_answers, context), threads, most, GROWN, "uploads")
 
 
-def _answers(context: Context, arrivals: Sequence[intake.Arrival]) -> list[Response | Exception]:
-    return [_answer(outcome) for outcome in intake.receive_together(context, arrivals)]
+def _answers(
+    context: Context, arrivals: Sequence[intake.Arrival], another: Another[intake.Arrival]
+) -> list[Response | Exception]:
+    return [_answer(outcome) for outcome in intake.receive_together(context, arrivals, another)]
 
 
 def _answer(outcome: intake.Outcome) -> Response | Exception:

@@ -1,7 +1,8 @@
 """Chunks on their way in, several at a time.
 
 What each needs is computed first, one after the other; then all of them are stored, on SQLite with one lock and one
-commit. Whether one of them succeeds is nothing to the others.
+commit. While another process has that lock, more are taken in and computed rather than waited. Whether one of them
+succeeds is nothing to the others.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -52,16 +53,33 @@ def receive(context: Context, device_id: str, chunk: ingest.Chunk) -> schemas.Up
     return outcome
 
 
-def receive_together(context: Context, arrivals: Sequence[Arrival]) -> list[Outcome]:
-    """Take in chunks; give for each what is answered, or the error that `receive` raises."""
+def receive_together(
+    context: Context, arrivals: Sequence[Arrival], another: Callable[[], Arrival | None] = lambda: None
+) -> list[Outcome]:
+    """Take in chunks, and while another process writes those that `another` gives, until it gives None.
+
+    Gives for each, in that order, what is answered, or the error that `receive` raises.
+    """
     uploads = [_Upload(context, arrival) for arrival in arrivals]
+    _prepare(context, uploads)
+
+    def prepare_another() -> bool:
+        if (arrival := another()) is None:
+            return False
+        uploads.append(_Upload(context, arrival))
+        _prepare(context, uploads[-1:])
+        return True
+
+    _store(context, uploads, prepare_another)
+    context.wake()
+    return [upload.told() for upload in uploads]
+
+
+def _prepare(context: Context, uploads: "Sequence[_Upload]") -> None:
     for upload in uploads:
         upload.attempt(upload.parse)
     if context.database.is_sqlite:  # PostgreSQL locks a single device, and has no time to win
         _foresee(context, [upload for upload in uploads if upload.is_open])
-    _store(context, [upload for upload in uploads if upload.is_open])
-    context.wake()
-    return [upload.told() for upload in uploads]
 
 
 def _foresee(context: Context, uploads: "Sequence[_Upload]") -> None:
@@ -75,12 +93,14 @@ def _foresee(context: Context, uploads: "Sequence[_Upload]") -> None:
             upload.attempt(upload.foresee)
 
 
-def _store(context: Context, uploads: "Sequence[_Upload]") -> None:
-    if not uploads:
+def _store(context: Context, uploads: "Sequence[_Upload]", meanwhile: Callable[[], bool]) -> None:
+    """Let those take effect that are not refused yet; `meanwhile` may add to them."""
+    if not any(upload.is_open for upload in uploads):
         return
-    with _failing_together(uploads), context.database.together() as transaction:
+    with _failing_together(uploads), context.database.together(meanwhile) as transaction:
         for upload in uploads:
-            upload.attempt(partial(upload.store, transaction))
+            if upload.is_open:
+                upload.attempt(partial(upload.store, transaction))
 
 
 @contextmanager

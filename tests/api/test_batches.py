@@ -2,19 +2,17 @@
 
 import asyncio
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import pytest
 
-from api.batches import Batches
-
-Work = Callable[[Sequence[int]], Sequence[int | Exception]]
+from api.batches import Another, Batches, Work
 
 
 @contextmanager
-def batches(work: Work, most: int = 3, threads: int = 1) -> Iterator[Batches[int, int]]:
-    made = Batches(work, threads, most, "test")
+def batches(work: Work[int, int], most: int = 3, threads: int = 1) -> Iterator[Batches[int, int]]:
+    made = Batches(work, threads, most, 5, "test")
     try:
         yield made
     finally:
@@ -29,7 +27,7 @@ class Held:
         self.begun = threading.Event()
         self.go = threading.Event()
 
-    def __call__(self, items: Sequence[int]) -> list[int | Exception]:
+    def __call__(self, items: Sequence[int], _: Another[int]) -> list[int | Exception]:
         self.seen.append(list(items))
         self.begun.set()
         assert self.go.wait(20)
@@ -52,8 +50,47 @@ def test_what_comes_in_while_one_is_worked_on_makes_the_next() -> None:
     assert work.seen == [[0], [1, 2, 3], [4, 5]]
 
 
+class Greedy(Held):
+    """Work that, when it is let go, adds to its batch what it can, and fails if it may."""
+
+    fails = False
+
+    def __call__(self, items: Sequence[int], another: Another[int]) -> list[int | Exception]:
+        done = super().__call__(items, another)
+        while (item := another()) is not None:
+            self.seen[-1].append(item)
+            done.append(10 * item)
+        if self.fails:
+            raise RuntimeError("broken")
+        return done
+
+
+async def _seven(made: Batches[int, int], work: Held) -> list[int | BaseException]:
+    tasks = [asyncio.create_task(made.do(item)) for item in range(7)]
+    assert await asyncio.to_thread(work.begun.wait, 20)
+    await asyncio.sleep(0.05)
+    closing = asyncio.create_task(asyncio.to_thread(made.close))
+    await asyncio.sleep(0.05)
+    work.go.set()
+    await closing
+    return await asyncio.gather(*tasks, return_exceptions=True)
+
+
+def test_work_adds_to_its_batch_what_comes_in_as_far_as_there_is_place() -> None:
+    work = Greedy()
+    made = Batches(work, 1, 1, 5, "test")
+    assert asyncio.run(_seven(made, work)) == [0, 10, 20, 30, 40, 50, 60]
+    assert work.seen == [[0, 1, 2, 3, 4], [5, 6]]
+
+
+def test_what_was_added_fails_with_its_batch() -> None:
+    work = Greedy()
+    work.fails = True
+    assert [str(error) for error in asyncio.run(_seven(Batches(work, 1, 1, 5, "test"), work))] == ["broken"] * 7
+
+
 def test_an_error_reaches_only_whoever_it_belongs_to() -> None:
-    def work(items: Sequence[int]) -> list[int | Exception]:
+    def work(items: Sequence[int], _: Another[int]) -> list[int | Exception]:
         return [ValueError(item) if item % 2 else item for item in items]
 
     async def run(made: Batches[int, int]) -> list[int | BaseException]:
@@ -66,7 +103,7 @@ def test_an_error_reaches_only_whoever_it_belongs_to() -> None:
 
 
 def test_work_that_fails_fails_for_its_batch_and_goes_on() -> None:
-    def work(items: Sequence[int]) -> list[int | Exception]:
+    def work(items: Sequence[int], _: Another[int]) -> list[int | Exception]:
         if 0 in items:
             raise RuntimeError("broken")
         return list(items)
@@ -106,5 +143,5 @@ def test_closing_finishes_what_was_accepted() -> None:
         await closing
         return await asyncio.gather(*tasks)
 
-    made = Batches(work, 2, 2, "test")
+    made = Batches(work, 2, 2, 2, "test")
     assert asyncio.run(run(made)) == [0, 10, 20, 30, 40]

@@ -16,6 +16,7 @@ from api.services.errors import ConflictError, NotFoundError
 from api.settings import Settings
 from storage.chunks import Body
 from storage.database import ReadSession
+from storage.file_lock import FileLock
 from storage.models import chunks as chunk_table
 from tests.conftest import Clock
 from tests.crashes import crashed
@@ -93,6 +94,52 @@ def test_together_ends_where_one_after_the_other_ends(context: Context) -> None:
     one = shown(context, "c").model_dump(exclude={"device_id", "since"})
     assert shown(context, "a").model_dump(exclude={"device_id", "since"}) == one
     assert shown(context, "b").model_dump(exclude={"device_id", "since"}) == one
+
+
+class Writing:
+    """Another process that writes until the last of some chunks has been asked for."""
+
+    def __init__(self, context: Context, coming: list[intake.Arrival]) -> None:
+        self._lock = FileLock(context.database.url.database)
+        self._coming = coming
+
+    def __enter__(self) -> "Writing":
+        assert self._lock.acquire(20)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._lock.close()
+
+    def another(self) -> intake.Arrival | None:
+        if self._coming:
+            return self._coming.pop(0)
+        self._lock.release()
+        return None
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_what_comes_in_while_another_process_writes_is_taken_in_too(context: Context) -> None:
+    seen = count_commits(context)
+    coming = [arrival("b", 0), arrival("nobody", 0), arrival("c", 0, b"t,ax\n1,x\n"), arrival("a", 1), arrival("b", 1)]
+    with Writing(context, coming) as other:
+        outcomes = intake.receive_together(context, [arrival("a", 0)], other.another)
+    assert [told(outcome) for outcome in outcomes] == [
+        "applied", "applied", NotFoundError.__name__, FormatError.__name__, "applied", "applied",
+    ]  # fmt: skip
+    assert len(seen) == 1
+    assert receipts(context) == 4
+
+
+@pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
+def test_what_came_in_meanwhile_fails_too_when_the_other_process_goes_on(
+    context: Context, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("storage.database.BUSY_TIMEOUT", 0.2)
+    coming = [arrival("b", 0)]
+    with Writing(context, []):
+        outcomes = intake.receive_together(context, [arrival("a", 0)], lambda: coming.pop() if coming else None)
+    assert [told(outcome) for outcome in outcomes] == [sa.exc.TimeoutError.__name__] * 2
+    assert receipts(context) == 0
 
 
 @pytest.mark.parametrize("backend", ["sqlite"], indirect=True)
