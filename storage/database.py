@@ -142,7 +142,7 @@ class Database:
         """Give what opens transactions, each on its own whether it takes effect.
 
         On SQLite all become durable together when the block ends without an error, elsewhere each when it ends. While
-        another process writes there, `meanwhile` is called again and again: some other work, False when there was none.
+        another process writes there, `meanwhile` is called: some other work, False when there is none.
         """
         if self._group is None:
             yield self.write

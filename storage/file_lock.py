@@ -28,20 +28,18 @@ class FileLock:
     def acquire(self, seconds: float, meanwhile: Callable[[], bool] = lambda: False) -> bool:
         """Wait for the lock, at most so long; tell whether it is ours.
 
-        While another has it, `meanwhile` is called again and again: some other work, False when there was none.
+        While another has it, `meanwhile` is called: some other work, False when there is none. Only then is a place in
+        the line taken, for there nobody gets past it.
         """
         if self._path is None:
             return True
         if self._files is None:
             self._files = (_open(f"{self._path}-next"), _open(f"{self._path}-turn"))
-        head, lock = self._files
         deadline = time.monotonic() + seconds
-        if not _try(head, deadline, meanwhile):
-            return False
-        try:
-            return _try(lock, deadline, meanwhile)
-        finally:
-            fcntl.flock(head, fcntl.LOCK_UN)
+        while not _wait(*self._files, until=0.0):
+            if not meanwhile():
+                return _wait(*self._files, until=deadline)
+        return True
 
     def release(self) -> None:
         """Let the next one have it."""
@@ -59,12 +57,20 @@ def _open(path: str) -> int:
     return os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_CLOEXEC", 0), 0o644)
 
 
-def _try(file: int, deadline: float, meanwhile: Callable[[], bool]) -> bool:
+def _wait(head: int, lock: int, until: float) -> bool:
+    if not _try(head, until):
+        return False
+    try:
+        return _try(lock, until)
+    finally:
+        fcntl.flock(head, fcntl.LOCK_UN)
+
+
+def _try(file: int, until: float) -> bool:
     while True:
         with suppress(BlockingIOError):
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             return True
-        if time.monotonic() > deadline:
+        if time.monotonic() > until:
             return False
-        if not meanwhile():
-            time.sleep(PAUSE)
+        time.sleep(PAUSE)

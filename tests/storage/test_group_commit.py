@@ -165,6 +165,26 @@ def test_processes_take_turns(tmp_path: Path) -> None:
     assert min(numbers) > 0.2 * max(numbers)
 
 
+def test_nobody_stands_in_the_line_while_there_is_other_work(tmp_path: Path) -> None:
+    writing, busy, passing = (FileLock(str(tmp_path / "x")) for _ in range(3))
+    work = iter([True, True, False])
+
+    def pass_by() -> bool:
+        writing.release()
+        assert passing.acquire(0.0)
+        return next(work)
+
+    assert writing.acquire(5)
+    assert not busy.acquire(0.0)
+    assert not busy.acquire(0.0, pass_by)
+    assert list(work) == []
+    passing.release()
+    assert busy.acquire(0.0, pass_by)
+    assert not passing.acquire(0.0)
+    for lock in (writing, busy, passing):
+        lock.close()
+
+
 class SlowCondition(threading.Condition):
     """Lets others come between two uses of the lock."""
 
