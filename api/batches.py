@@ -8,6 +8,7 @@ import asyncio
 import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from queue import Empty, SimpleQueue
 from typing import Generic, NamedTuple, TypeVar
 
@@ -88,12 +89,12 @@ class Batches(Generic[Item, Result]):
             self._queue.put(None)  # the end, seen again when this batch is done
         return False
 
-    def _finish(self, batch: list[_Waiting[Item, Result]]) -> None:
-        def another() -> Item | None:
-            return batch[-1].item if self._grow(batch, self._grown) else None
+    def _another(self, batch: list[_Waiting[Item, Result]]) -> Item | None:
+        return batch[-1].item if self._grow(batch, self._grown) else None
 
+    def _finish(self, batch: list[_Waiting[Item, Result]]) -> None:
         try:
-            results = self._work([waiting.item for waiting in batch], another)
+            results = self._work([waiting.item for waiting in batch], partial(self._another, batch))
         except Exception as error:
             results = [error] * len(batch)
         for loop in {waiting.loop for waiting in batch}:  # it is one, and woken once for all

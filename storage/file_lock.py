@@ -1,8 +1,8 @@
 """A lock between processes, held in turns. SQLite's own waiting is by chance: under load some wait for seconds.
 
-The lock is two files beside the database. Whoever wants it first takes the place at the head of the line (`-next`),
-there waits for the lock (`-turn`), and then leaves the place to another. A process that has just let go cannot take the
-lock again before the one that stands there. The system frees both when a process dies.
+The lock is two files beside the database. Whoever finds it taken, and has nothing else to do, takes the place at the
+head of the line (`-next`), there waits for the lock (`-turn`), and then leaves the place to another. A process that has
+just let go cannot take the lock again before the one that stands there. The system frees both when a process dies.
 """
 
 import os
