@@ -1,4 +1,4 @@
-"""HTTP as uvicorn reads it, with bounds on what is neither a body nor a whole request: httptools has none."""
+"""HTTP as uvicorn reads it, with bounds on what a connection keeps: of a request that is not whole, or is over."""
 
 import asyncio
 import logging
@@ -59,6 +59,12 @@ class BoundedProtocol(HttpToolsProtocol):
         """Take a part of the body."""
         self._unfinished = 0
         super().on_body(body)
+
+    def on_response_complete(self) -> None:
+        """Go on to the next request; what came of a body that nobody read is not kept until then."""
+        if self.cycle.response_complete:  # else it is that of a request behind this one
+            self.cycle.body = bytearray()
+        super().on_response_complete()
 
     def _await_head(self) -> None:
         self._patience = self.loop.call_later(self.HEAD_SECONDS, self.transport.close)

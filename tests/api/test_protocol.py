@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
+from typing import cast
 
 import pytest
 import uvicorn
@@ -14,6 +15,8 @@ from api.protocol import MAX_HEAD, BoundedProtocol
 
 HEAD = b"POST / HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
 ANSWER = b"HTTP/1.1 200 OK\r\n"
+UNREAD = "/unread"
+"""answered before its body is read"""
 PATIENCE = 0.5
 """s"""
 
@@ -22,25 +25,35 @@ class Impatient(BoundedProtocol):
     HEAD_SECONDS = PATIENCE
 
 
-async def app(_: Scope, receive: Receive, send: Send) -> None:
-    message = await receive()
-    while message.get("more_body"):
+async def app(scope: Scope, receive: Receive, send: Send) -> None:
+    body = b""
+    while scope["path"] != UNREAD:
         message = await receive()
-    if message["type"] == "http.request":
-        await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"0")]})
-        await send({"type": "http.response.body"})
+        body += message.get("body", b"")
+        if not message.get("more_body"):
+            if message["type"] != "http.request":
+                return
+            break
+    length = str(len(body)).encode()
+    await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"0"), (b"got", length)]})
+    await send({"type": "http.response.body"})
 
 
 @pytest.fixture
-def port() -> Iterator[int]:
+def server() -> Iterator[uvicorn.Server]:
     server = uvicorn.Server(uvicorn.Config(app, port=0, http=Impatient, lifespan="off", log_config=None))
     thread = threading.Thread(target=server.run)
     thread.start()
     while not server.started:
         time.sleep(0.01)
-    yield int(server.servers[0].sockets[0].getsockname()[1])
+    yield server
     server.should_exit = True
     thread.join()
+
+
+@pytest.fixture
+def port(server: uvicorn.Server) -> int:
+    return int(server.servers[0].sockets[0].getsockname()[1])
 
 
 @contextmanager
@@ -111,3 +124,32 @@ def test_a_body_and_a_pause_between_requests_may_take_longer(port: int) -> None:
             opened.sendall(b"0\r\n\r\n")
             assert opened.recv(65536).startswith(ANSWER)
             time.sleep(PATIENCE * 2)
+
+
+def kept(server: uvicorn.Server) -> int:
+    """Count the bytes of bodies that connections keep."""
+    return sum(len(connection.cycle.body) for connection in cast("set[Impatient]", server.server_state.connections))
+
+
+def posted(path: str, size: int) -> bytes:
+    head = f"POST {path} HTTP/1.1\r\nHost: x\r\nContent-Length: {size}\r\n\r\n"
+    return head.encode() + b"a" * size
+
+
+def test_a_body_that_nobody_read_is_not_kept_until_the_next_request(server: uvicorn.Server, port: int) -> None:
+    with connection(port) as opened:
+        for _ in range(3):
+            opened.sendall(posted(UNREAD, 60_000))
+            assert opened.recv(65536).startswith(ANSWER)
+            assert kept(server) == 0
+        opened.sendall(posted("/", 60_000))
+        assert b"got: 60000\r\n" in opened.recv(65536)
+
+
+def test_bodies_of_requests_that_come_at_once_are_all_read(port: int) -> None:
+    with connection(port) as opened:
+        opened.sendall(posted(UNREAD, 1000) + posted("/", 2000) + posted(UNREAD, 10) + posted("/", 3000))
+        got = b""
+        while got.count(ANSWER) < 4:
+            got += opened.recv(65536)
+    assert [int(part.split(b"\r\n")[0]) for part in got.split(b"got: ")[1:]] == [0, 2000, 0, 3000]

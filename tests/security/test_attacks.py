@@ -6,6 +6,7 @@ import logging
 import socket
 import tracemalloc
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import httpx
@@ -82,6 +83,26 @@ def test_odd_requests_do_no_harm(server: ServerProcess, request_: bytes) -> None
 
 
 # ---------------------------------------------------------------- bombs
+
+
+def resident(server: ServerProcess) -> int:
+    """Give the bytes of memory a server has."""
+    assert server.process is not None
+    status = Path(f"/proc/{server.process.pid}/status").read_text()
+    return int(status.partition("VmRSS:")[2].split()[0]) * 1024
+
+
+def test_what_is_refused_without_being_read_does_not_stay_in_memory(server: ServerProcess) -> None:
+    many, size = 300, 100_000
+    head = b"POST /api/v1/devices/a/chunks?session=a&seq=0 HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer nobodys\r\n"
+    request = head + b"Content-Length: %d\r\n\r\n" % size + b"a" * size
+    before = resident(server)
+    with ExitStack() as opened:
+        for _ in range(many):
+            connection = opened.enter_context(socket.create_connection(("127.0.0.1", server.port), timeout=10))
+            connection.sendall(request)
+            assert connection.recv(65536).startswith(b"HTTP/1.1 401 ")
+        assert resident(server) - before < many * size / 2
 
 
 def bomb(encoding: str, layers: int, size: int = 200 * MIB) -> bytes:
