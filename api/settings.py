@@ -46,7 +46,8 @@ class Settings(BaseSettings):
         3,
         ge=1,
         le=64,
-        description="Threads of a server process that work on chunks, in batches of 4; on SQLite one, in batches of 8 to 32.",
+        description="Threads of a server process that work on chunks, in batches of 4; "
+        "on SQLite one, in batches of 8 to 32.",
     )
     max_inflight_bytes: int = Field(
         256 * MIB,

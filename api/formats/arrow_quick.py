@@ -4,7 +4,7 @@ Whatever is unusual or not sound is left to that detour, which tells exactly wha
 """
 
 import math
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -16,55 +16,102 @@ from api.formats.checks import Rows
 from api.formats.delimited import Floats
 from api.formats.native import ACCELERATION, FIELD, GPS, OTHERS, RATE, SLOW, TIME, UNITS, Packed
 
-_Columns = dict[str, pa.Array]
-_DENSE: Final = frozenset({*TIME, *ACCELERATION, *RATE})
+_UNSCALED: Final = Scale(1.0, 0.0)
 
 
-def pack(batch: pa.RecordBatch, scales: Scales) -> Packed | None:
-    """Give the columns of a batch as samples are made of them; None when the other way has to look at them."""
-    columns: _Columns = dict(zip(batch.schema.names, batch.columns, strict=True))
-    if not _usual(columns):
+class _Column(NamedTuple):
+    place: int
+    """in a batch"""
+    kind: np.dtype[Any]
+    """of its numbers"""
+    scale: Scale | None
+
+
+class Plan(NamedTuple):
+    """Where a schema has what is read, looked up once for all batches with this schema."""
+
+    time: _Column
+    unit: float
+    """s"""
+    acceleration: tuple[_Column, ...]
+    rate: tuple[_Column, ...]
+    """none where no rates are sent"""
+    flag: _Column
+    gps: tuple[_Column, ...]
+    gps_places: tuple[int, ...]
+    """in a fix"""
+    factors: Floats
+    """(columns of the receiver, 1)"""
+    offsets: Floats
+    """(columns of the receiver, 1)"""
+
+
+def plan(schema: pa.Schema, scales: Scales) -> Plan | None:
+    """Give the plan of a schema that has the columns an upload needs; None when the other way has to look at it."""
+    names = {name: place for place, name in enumerate(schema.names)}
+    kinds = {name: schema.field(place).type for name, place in names.items()}
+    if any(name in names for name in (*FIELD, *OTHERS)) or not _usual(kinds):
         return None
-    time = next(name for name in TIME if name in columns)
-    t = np.empty(batch.num_rows)
-    _fill(t, columns[time], scales.get(time))
-    t *= UNITS[time]
-    f_s = _axes(columns, ACCELERATION, scales)
-    w_s = _axes(columns, RATE, scales) if RATE[0] in columns else None
-    flags = _flags(columns["fix"])
-    if flags is None or not (_in_order(t) and _finite(f_s) and (w_s is None or _finite(w_s))):
-        return None
-    fix_rows, none_rows = flags
-    fix = _fixes(columns, fix_rows, scales)
-    return None if fix is None else Packed(t, f_s, w_s, fix_rows, none_rows, fix)
 
+    def column(name: str) -> _Column:
+        return _Column(names[name], np.dtype(kinds[name].to_pandas_dtype()), scales.get(name))
 
-def _usual(columns: _Columns) -> bool:
-    """Tell whether the readings are all there, and numbers of a kind that is read without being cast."""
-    if any(name in columns for name in (*FIELD, *OTHERS)):
-        return False
-    dense = all(column.null_count == 0 for name, column in columns.items() if name in _DENSE)
-    numbers = (column.type for name, column in columns.items() if name in _DENSE or name in GPS)
-    return (
-        dense
-        and all(kind in {pa.float32(), pa.float64()} or pa.types.is_integer(kind) for kind in numbers)
-        and pa.types.is_integer(columns["fix"].type)
+    time, sent = next(name for name in TIME if name in names), [name for name in GPS if name in names]
+    gps = tuple(column(name) for name in sent)
+    applied = np.array([of.scale or _UNSCALED for of in gps]).reshape(-1, 2)
+    return Plan(
+        column(time),
+        UNITS[time],
+        tuple(column(name) for name in ACCELERATION),
+        tuple(column(name) for name in RATE if name in names),
+        column("fix"),
+        gps,
+        tuple(GPS.index(name) for name in sent),
+        applied[:, :1],
+        applied[:, 1:],
     )
 
 
-def _fill(values: Floats, column: pa.Array, scale: Scale | None) -> None:
+def _usual(kinds: dict[str, pa.DataType]) -> bool:
+    """Tell whether the numbers are of a kind that is read without being cast."""
+    numbers = [kind for name, kind in kinds.items() if name in {*TIME, *ACCELERATION, *RATE, *GPS}]
+    return pa.types.is_integer(kinds["fix"]) and all(
+        kind in {pa.float32(), pa.float64()} or pa.types.is_integer(kind) for kind in numbers
+    )
+
+
+def pack(batch: pa.RecordBatch, plan: Plan) -> Packed | None:
+    """Give the columns of a batch as samples are made of them; None when the other way has to look at them."""
+    if any(batch.column(column.place).null_count for column in (plan.time, *plan.acceleration, *plan.rate)):
+        return None
+    t = np.empty(batch.num_rows)
+    _fill(t, batch, plan.time)
+    t *= plan.unit
+    f_s = _axes(batch, plan.acceleration)
+    w_s = _axes(batch, plan.rate) if plan.rate else None
+    flags = _flags(batch.column(plan.flag.place), plan.flag.kind)
+    if flags is None or f_s is None or (plan.rate and w_s is None) or not _in_order(t):
+        return None
+    fix_rows, none_rows = flags
+    fix = _fixes(batch, plan, fix_rows)
+    return None if fix is None else Packed(t, f_s, w_s, fix_rows, none_rows, fix)
+
+
+def _fill(values: Floats, batch: pa.RecordBatch, column: _Column) -> None:
     """Take the numbers of a column with no nulls over."""
-    if scale is None:
-        values[:] = column.to_numpy()
+    stored = _values(batch.column(column.place), column.kind)
+    if column.scale is None:
+        values[:] = stored
     else:
-        scale.values(column.to_numpy(), out=values)
+        column.scale.values(stored, out=values)
 
 
-def _axes(columns: _Columns, names: tuple[str, ...], scales: Scales) -> Floats:
-    axes = np.empty((len(columns[names[0]]), len(names)))
-    for k, name in enumerate(names):
-        _fill(axes[:, k], columns[name], scales.get(name))
-    return axes
+def _axes(batch: pa.RecordBatch, columns: tuple[_Column, ...]) -> Floats | None:
+    """Give readings side by side, (N, 3); None when one may not be finite, which a scaled integer always is."""
+    axes = np.empty((batch.num_rows, len(columns)))
+    for k, column in enumerate(columns):
+        _fill(axes[:, k], batch, column)
+    return axes if all(column.kind.kind != "f" for column in columns) or _finite(axes) else None
 
 
 def _in_order(t: Floats) -> bool:
@@ -78,30 +125,36 @@ def _finite(values: Floats) -> bool:
         return math.isfinite(values.sum())
 
 
-def _flags(column: pa.Array) -> tuple[Rows, Rows] | None:
+def _flags(column: pa.Array, kind: np.dtype[Any]) -> tuple[Rows, Rows] | None:
     """Give the rows with 1 and those with 0; None when there is anything else but null."""
-    said, filled = _values(column), _filled(column)
-    fix_rows, none_rows = np.flatnonzero((said == 1) & filled), np.flatnonzero((said == 0) & filled)
-    return (fix_rows, none_rows) if fix_rows.size + none_rows.size + column.null_count == len(column) else None
+    filled = np.flatnonzero(_filled(column))
+    said = _values(column, kind)[filled]
+    fix_rows, none_rows = filled[said == 1], filled[said == 0]
+    return (fix_rows, none_rows) if fix_rows.size + none_rows.size == filled.size else None
 
 
-def _fixes(columns: _Columns, rows: Rows, scales: Scales) -> Floats | None:
+def _fixes(batch: pa.RecordBatch, plan: Plan, rows: Rows) -> Floats | None:
     """Give the fixes (M, 8), SI units and radians; None when one is not sound, or a number anywhere is infinite."""
+    told = np.empty((len(plan.gps), rows.size))
+    filled = np.empty(told.shape, np.uint8)
+    for k, (place, kind, _) in enumerate(plan.gps):
+        column = batch.column(place)
+        values = _values(column, kind)
+        if kind.kind == "f" and np.isinf(values).any():  # those behind nulls included
+            return None
+        told[k] = values[rows]
+        filled[k] = _filled_at(column, rows)
+    told *= plan.factors
+    told += plan.offsets
+    told[filled == 0] = np.nan
     fix = np.full((rows.size, len(GPS)), np.nan)
-    for k, name in enumerate(GPS):
-        if name in columns:
-            values = _values(columns[name])
-            if values.dtype.kind == "f" and np.isinf(values).any():  # those behind nulls included
-                return None
-            scale, told = scales.get(name), values[rows]
-            fix[:, k] = np.where(_filled_at(columns[name], rows), told if scale is None else scale.values(told), np.nan)
+    fix[:, plan.gps_places] = told.T
     return fix if _native_kernel.take_fixes(SLOW, fix) else None
 
 
-def _values(column: pa.Array) -> NDArray[Any]:
+def _values(column: pa.Array, kind: np.dtype[Any]) -> NDArray[Any]:
     """Give the numbers (N,), anything where there is null."""
-    start = column.offset * column.type.bit_width // 8
-    return np.frombuffer(column.buffers()[1], column.type.to_pandas_dtype(), len(column), start)
+    return np.frombuffer(column.buffers()[1], kind, len(column), column.offset * kind.itemsize)
 
 
 def _filled(column: pa.Array) -> NDArray[np.bool_]:
@@ -113,11 +166,14 @@ def _filled(column: pa.Array) -> NDArray[np.bool_]:
     return np.unpackbits(np.frombuffer(bits, np.uint8), count=end, bitorder="little")[column.offset :].view(np.bool_)
 
 
-def _filled_at(column: pa.Array, rows: Rows) -> NDArray[np.bool_]:
-    """Tell on which of a few rows there is no null."""
+def _filled_at(column: pa.Array, rows: Rows) -> NDArray[np.uint8] | int:
+    """Tell on which of a few rows there is no null: 0 where there is."""
     bits = column.buffers()[0]
     if bits is None:
-        return np.ones(rows.size, np.bool_)
+        return 1
     places = rows + column.offset
-    filled: NDArray[np.bool_] = (np.frombuffer(bits, np.uint8)[places >> 3] >> (places & 7) & 1).astype(np.bool_)
-    return filled
+    bit: NDArray[np.uint8] = np.frombuffer(bits, np.uint8)[places >> 3] & _BIT[places & 7]
+    return bit
+
+
+_BIT: Final = np.left_shift(1, np.arange(8)).astype(np.uint8)

@@ -34,6 +34,7 @@ class _Head(NamedTuple):
 
     schema: pa.Schema
     scales: Scales
+    plan: arrow_quick.Plan | None
     notices: tuple[str, ...]
 
 
@@ -53,13 +54,15 @@ def parse(content: bytes, limits: Limits, fingerprint: Fingerprint) -> ParsedLog
         message = f"expected an Arrow IPC stream: {printable(str(error))}"
         raise FormatError.unreadable(Problem(None, None, "an Arrow IPC stream", message)) from error
     checks.refuse_empty(batches.num_rows, line=1)
-    return ParsedLog(MEDIA_TYPE, fingerprint, head.notices, batches.num_rows, _sound(batches, head.scales).read)
+    return ParsedLog(MEDIA_TYPE, fingerprint, head.notices, batches.num_rows, _sound(batches, head).read)
 
 
-def _sound(batches: pa.Table, scales: Scales) -> NativeTable:
-    if len(pieces := batches.to_batches()) == 1 and (packed := arrow_quick.pack(pieces[0], scales)) is not None:
-        return NativeTable(packed, {})
-    table = _table(batches, scales)
+def _sound(batches: pa.Table, head: _Head) -> NativeTable:
+    if head.plan is not None and len(pieces := batches.to_batches()) == 1:
+        packed = arrow_quick.pack(pieces[0], head.plan)
+        if packed is not None:
+            return NativeTable(packed, {})
+    table = _table(batches, head.scales)
     return NativeTable.of(table, lambda row, column: Cell(row + 1, _shown(table.columns, row, column)))
 
 
@@ -82,7 +85,8 @@ def _head(written: bytes) -> _Head:
     """Read and check a schema."""
     schema = pa.ipc.read_schema(pa.BufferReader(written))
     notices = check_names(tuple(schema.names), line=None)
-    return _Head(schema, _check_types(schema), notices)
+    scales = _check_types(schema)
+    return _Head(schema, scales, arrow_quick.plan(schema, scales), notices)
 
 
 _usual_head = lru_cache(maxsize=128)(_head)

@@ -33,6 +33,11 @@ def batch(table: Table, kind: pa.DataType, milliseconds: bool = False) -> pa.Rec
     return pa.RecordBatch.from_pydict(columns)
 
 
+def quickly(sent: pa.RecordBatch, scales: Scales = NO_SCALES) -> Packed | None:
+    plan = arrow_quick.plan(sent.schema, scales)
+    return None if plan is None else arrow_quick.pack(sent, plan)
+
+
 def the_long_way(sent: pa.RecordBatch, scales: Scales = NO_SCALES) -> Packed | None:
     return native._pack(arrow_stream._table(pa.Table.from_batches([sent]), scales))
 
@@ -51,7 +56,7 @@ def assert_same(quick: Packed, long: Packed | None) -> None:
 @example(SOUND_TABLE, pa.float64(), False)
 def test_both_ways_give_the_same(table: Table, kind: pa.DataType, milliseconds: bool) -> None:
     sent = batch(table, kind, milliseconds)
-    quick = arrow_quick.pack(sent, NO_SCALES)
+    quick = quickly(sent)
     if quick is not None:
         assert_same(quick, the_long_way(sent))
     else:
@@ -70,7 +75,7 @@ def test_what_devices_usually_send_goes_the_short_way(optional: set[str], kind: 
     for name in GPS:
         if name in columns:
             columns[name][1:3] = np.nan
-    quick = arrow_quick.pack(batch(Table(tuple(columns), np.array(list(columns.values()))), kind), NO_SCALES)
+    quick = quickly(batch(Table(tuple(columns), np.array(list(columns.values()))), kind))
     assert quick is not None
     assert quick.fix_rows.tolist() == [0, 3]
     assert quick.none_rows.tolist() == [1]
@@ -95,19 +100,19 @@ def test_what_devices_usually_send_goes_the_short_way(optional: set[str], kind: 
 def test_what_is_odd_is_left_to_the_long_way(name: str, values: list[Any]) -> None:
     sent = batch(SOUND_TABLE, pa.float64()).to_pydict() | {"fix": pa.array([1, 0, None, 1], pa.int8())}
     odd = pa.RecordBatch.from_pydict(sent | {name: pa.array(values, from_pandas=False)})
-    assert arrow_quick.pack(odd, NO_SCALES) is None
+    assert quickly(odd) is None
 
 
 def test_numbers_whose_sum_is_not_finite_are_left_to_the_long_way() -> None:
     columns = sound_columns({*GPS, *VELOCITY}) | {"ax": np.full(4, 1e308)}
     sent = batch(Table(tuple(columns), np.array(list(columns.values()))), pa.float64())
-    assert arrow_quick.pack(sent, NO_SCALES) is None
+    assert quickly(sent) is None
     assert the_long_way(sent) is not None
 
 
 def test_a_part_of_a_larger_batch() -> None:
     sent = batch(SOUND_TABLE, pa.float32()).slice(1, 3)
-    quick = arrow_quick.pack(sent, NO_SCALES)
+    quick = quickly(sent)
     assert quick is not None
     assert_same(quick, the_long_way(sent))
 
@@ -141,7 +146,7 @@ def test_counts_with_a_scale_go_the_short_way_and_give_the_same(cut: int) -> Non
     taken = 0
     for seed in range(300):
         sent = counts(20, np.random.default_rng(seed)).slice(cut)
-        quick, long = arrow_quick.pack(sent, scales), the_long_way(sent, scales)
+        quick, long = quickly(sent, scales), the_long_way(sent, scales)
         if quick is not None:
             assert_same(quick, long)
             taken += 1
