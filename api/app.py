@@ -64,6 +64,7 @@ def create_app(
         redoc_url=None,
         responses=errors.RESPONSES,
         generate_unique_id_function=lambda route: route.name,
+        telemetry={"tracing": False, "metrics": False, "logs": False},  # see `tracing` and `metrics`
     )
     errors.install(app)
     app.router.routes.append(PlainUploads())

@@ -7,7 +7,7 @@ call costs SQLAlchemy more time than the database needs to run it.
 import math
 import time
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from typing import Any, TypeVar
 
 import orjson
@@ -25,7 +25,8 @@ T = TypeVar("T")
 BUSY_TIMEOUT = 10.0
 """s a writer waits for another one before the request is answered with 503"""
 
-
+LOOKS_KEPT = 2
+"""connections to SQLite kept for looks: the event loop's and that of the thread that works on uploads"""
 ASKED_AFTER = 1.0
 """s a connection to a server has rested after which it is asked whether it still lives"""
 
@@ -110,6 +111,8 @@ class Database:
         # SQLite's driver begins nothing by itself here, see `_sqlite_engines`
         # from the engine itself: what was set for the reads would be set once more, after this
         self._looks = self._reads if self.is_sqlite else self._writes.execution_options(isolation_level="AUTOCOMMIT")
+        self._looking: list[Connection] = []
+        """connections to SQLite with which nobody looks just now"""
         self._group = GroupCommit(self._writes, FileLock(self.url.database)) if self.is_sqlite else None
 
     @property
@@ -126,8 +129,24 @@ class Database:
     @contextmanager
     def look(self) -> Iterator[ReadSession]:
         """Look at the database without a transaction: each prepared statement sees the moment it runs at."""
-        with self._looks.connect() as connection:
+        if not self.is_sqlite:
+            with self._looks.connect() as connection:
+                yield ReadSession(connection)
+            return
+        connection = self._connection_to_look()
+        with _closed_on_error(connection):
             yield ReadSession(connection)
+            connection.rollback()  # a statement that is not prepared has begun a transaction
+        if len(self._looking) < LOOKS_KEPT:
+            self._looking.append(connection)
+        else:
+            connection.close()
+
+    def _connection_to_look(self) -> Connection:
+        """Take one that is kept: to take it from a pool and give it back costs more than to look."""
+        with suppress(IndexError):
+            return self._looking.pop()
+        return self._looks.connect()
 
     @contextmanager
     def write(self) -> Iterator[WriteSession]:
@@ -155,10 +174,21 @@ class Database:
 
     def close(self) -> None:
         """Close every connection."""
+        while self._looking:
+            self._looking.pop().close()
         self._reads.dispose()
         self._writes.dispose()
         if self._group is not None:
             self._group.close()
+
+
+@contextmanager
+def _closed_on_error(connection: Connection) -> Iterator[None]:
+    try:
+        yield
+    except BaseException:
+        connection.close()
+        raise
 
 
 def _as_json(value: Any) -> str:
@@ -193,9 +223,11 @@ def _sqlite_engines(url: sa.URL) -> tuple[Engine, Engine]:
 
         return made
 
+    # what a SAVEPOINT may have to take back would else go through a file, page by page, in every group of uploads
+    writing = ("synchronous = FULL", "temp_store = MEMORY")
     # more than there are threads that read: a look at a key, in the event loop, must not wait for one of them to end
     reads = engine("BEGIN", ("query_only = ON",), pool_size=8, max_overflow=56)
-    writes = engine("BEGIN IMMEDIATE", ("synchronous = FULL",), pool_size=1, max_overflow=1)
+    writes = engine("BEGIN IMMEDIATE", writing, pool_size=1, max_overflow=1)
     return reads, writes
 
 

@@ -1,6 +1,7 @@
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from storage.migrate import upgrade
 from storage.models import api_keys, metadata
 from storage.models import devices as device_table
 
+MEMORY = 2
+"""of SQLite's PRAGMA temp_store"""
 NOW = datetime(2024, 5, 6, 7, 8, 9, 123456, tzinfo=UTC)
 
 
@@ -69,6 +72,26 @@ def test_a_look_takes_no_transaction(tables: Database) -> None:
         assert installations.find(tx, "a") is not None
 
 
+def test_a_look_leaves_nothing_to_the_next_one(tables: Database) -> None:
+    for number in range(3):
+        with tables.look() as tx:
+            assert tx.value(sa.select(sa.func.count()).select_from(device_table)) == number
+        add_device(tables, f"box-{number}")
+        with pytest.raises(KeyError), tables.look() as tx:
+            assert tx.value(sa.select(sa.func.count()).select_from(device_table)) == number + 1
+            raise KeyError
+
+
+def test_many_looks_at_once_leave_connections_for_as_many_reads(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{tmp_path / 'x.db'}")
+    upgrade(database)
+    for way in (database.look, database.read):
+        with ExitStack() as opened:
+            for tx in [opened.enter_context(way()) for _ in range(60)]:
+                assert installations.find(tx, "a") is None
+    database.close()
+
+
 def test_moments_are_kept_to_the_microsecond(tables: Database) -> None:
     add_device(tables)
     with tables.read() as tx:
@@ -100,6 +123,14 @@ def test_every_reference_is_indexed(tables: Database) -> None:
         leading += [next(iter(constraint.columns)).name for constraint in table.constraints if constraint.columns]  # type: ignore[attr-defined]
         for reference in table.foreign_keys:
             assert reference.parent.name in leading, f"{table.name}.{reference.parent.name}"
+
+
+def test_what_a_savepoint_may_take_back_goes_through_no_file(tmp_path: Path) -> None:
+    database = Database(f"sqlite:///{tmp_path / 'x.db'}")
+    upgrade(database)
+    with database.write() as tx:
+        assert tx.connection.exec_driver_sql("PRAGMA temp_store").scalar() == MEMORY
+    database.close()
 
 
 def test_sqlite_is_durable(tmp_path: Path) -> None:
