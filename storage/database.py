@@ -134,9 +134,12 @@ class Database:
                 yield ReadSession(connection)
             return
         connection = self._connection_to_look()
-        with _closed_on_error(connection):
+        try:
             yield ReadSession(connection)
             connection.rollback()  # a statement that is not prepared has begun a transaction
+        except BaseException:
+            connection.close()
+            raise
         if len(self._looking) < LOOKS_KEPT:
             self._looking.append(connection)
         else:
@@ -180,15 +183,6 @@ class Database:
         self._writes.dispose()
         if self._group is not None:
             self._group.close()
-
-
-@contextmanager
-def _closed_on_error(connection: Connection) -> Iterator[None]:
-    try:
-        yield
-    except BaseException:
-        connection.close()
-        raise
 
 
 def _as_json(value: Any) -> str:

@@ -15,7 +15,7 @@ with suppress(ImportError):  # no such locks on Windows: SQLite's own have to do
     import fcntl
 
 PAUSE = 0.0002
-"""s between two tries"""
+"""s between two tries: flock(2) waits for ever or not at all, and who waits here has a time limit"""
 
 
 class FileLock:

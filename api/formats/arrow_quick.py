@@ -4,7 +4,7 @@ Whatever is unusual or not sound is left to that detour, which tells exactly wha
 """
 
 import math
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 import pyarrow as pa
@@ -14,9 +14,11 @@ from api.formats import _native_kernel
 from api.formats.arrow_scale import Scale, Scales
 from api.formats.checks import Rows
 from api.formats.delimited import Floats
-from api.formats.native import ACCELERATION, FIELD, GPS, OTHERS, RATE, SLOW, TIME, UNITS, Packed
+from api.formats.native import ACCELERATION, FIELD, GPS, OTHERS, RATE, READ, SLOW, TIME, UNITS, Packed
 
 _UNSCALED: Final = Scale(1.0, 0.0)
+_BIT: Final = np.left_shift(1, np.arange(8)).astype(np.uint8)
+"""that Arrow sets for a row where there is no null, the lowest for the first of eight"""
 
 
 class _Column(NamedTuple):
@@ -25,6 +27,12 @@ class _Column(NamedTuple):
     kind: np.dtype[Any]
     """of its numbers"""
     scale: Scale | None
+
+    @classmethod
+    def of(cls, schema: pa.Schema, name: str, scales: Scales) -> Self:
+        """Look a column up by its name."""
+        place = schema.get_field_index(name)
+        return cls(place, np.dtype(schema.field(place).type.to_pandas_dtype()), scales.get(name))
 
 
 class Plan(NamedTuple):
@@ -45,37 +53,32 @@ class Plan(NamedTuple):
     offsets: Floats
     """(columns of the receiver, 1)"""
 
-
-def plan(schema: pa.Schema, scales: Scales) -> Plan | None:
-    """Give the plan of a schema that has the columns an upload needs; None when the other way has to look at it."""
-    names = {name: place for place, name in enumerate(schema.names)}
-    kinds = {name: schema.field(place).type for name, place in names.items()}
-    if any(name in names for name in (*FIELD, *OTHERS)) or not _usual(kinds):
-        return None
-
-    def column(name: str) -> _Column:
-        return _Column(names[name], np.dtype(kinds[name].to_pandas_dtype()), scales.get(name))
-
-    time, sent = next(name for name in TIME if name in names), [name for name in GPS if name in names]
-    gps = tuple(column(name) for name in sent)
-    applied = np.array([of.scale or _UNSCALED for of in gps]).reshape(-1, 2)
-    return Plan(
-        column(time),
-        UNITS[time],
-        tuple(column(name) for name in ACCELERATION),
-        tuple(column(name) for name in RATE if name in names),
-        column("fix"),
-        gps,
-        tuple(GPS.index(name) for name in sent),
-        applied[:, :1],
-        applied[:, 1:],
-    )
+    @classmethod
+    def of(cls, schema: pa.Schema, scales: Scales) -> Self | None:
+        """Give that of a schema with the columns an upload needs; None when the other way has to look at it."""
+        if any(name in schema.names for name in (*FIELD, *OTHERS)) or not _usual(schema):
+            return None
+        columns = {name: _Column.of(schema, name, scales) for name in schema.names if name in READ}
+        time = next(name for name in TIME if name in columns)
+        sent = [name for name in GPS if name in columns]
+        applied = np.array([columns[name].scale or _UNSCALED for name in sent]).reshape(-1, 2)
+        return cls(
+            columns[time],
+            UNITS[time],
+            tuple(columns[name] for name in ACCELERATION),
+            tuple(columns[name] for name in RATE if name in columns),
+            columns["fix"],
+            tuple(columns[name] for name in sent),
+            tuple(GPS.index(name) for name in sent),
+            applied[:, :1],
+            applied[:, 1:],
+        )
 
 
-def _usual(kinds: dict[str, pa.DataType]) -> bool:
+def _usual(schema: pa.Schema) -> bool:
     """Tell whether the numbers are of a kind that is read without being cast."""
-    numbers = [kind for name, kind in kinds.items() if name in {*TIME, *ACCELERATION, *RATE, *GPS}]
-    return pa.types.is_integer(kinds["fix"]) and all(
+    numbers = [field.type for field in schema if field.name in {*TIME, *ACCELERATION, *RATE, *GPS}]
+    return pa.types.is_integer(schema.field("fix").type) and all(
         kind in {pa.float32(), pa.float64()} or pa.types.is_integer(kind) for kind in numbers
     )
 
@@ -174,6 +177,3 @@ def _filled_at(column: pa.Array, rows: Rows) -> NDArray[np.uint8] | int:
     places = rows + column.offset
     bit: NDArray[np.uint8] = np.frombuffer(bits, np.uint8)[places >> 3] & _BIT[places & 7]
     return bit
-
-
-_BIT: Final = np.left_shift(1, np.arange(8)).astype(np.uint8)

@@ -86,7 +86,7 @@ def _head(written: bytes) -> _Head:
     schema = pa.ipc.read_schema(pa.BufferReader(written))
     notices = check_names(tuple(schema.names), line=None)
     scales = _check_types(schema)
-    return _Head(schema, scales, arrow_quick.plan(schema, scales), notices)
+    return _Head(schema, scales, arrow_quick.Plan.of(schema, scales), notices)
 
 
 _usual_head = lru_cache(maxsize=128)(_head)

@@ -34,7 +34,7 @@ def batch(table: Table, kind: pa.DataType, milliseconds: bool = False) -> pa.Rec
 
 
 def quickly(sent: pa.RecordBatch, scales: Scales = NO_SCALES) -> Packed | None:
-    plan = arrow_quick.plan(sent.schema, scales)
+    plan = arrow_quick.Plan.of(sent.schema, scales)
     return None if plan is None else arrow_quick.pack(sent, plan)
 
 
