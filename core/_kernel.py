@@ -263,13 +263,15 @@ def push_point(c, t):
 def integrate(p, c, t, f_s, w_s, first, stop, counts):
     """Take IMU samples up to `stop` or until a report is due; gives the index after the last one taken.
 
-    Trapezoidal integral, a point in the ring every 0.1 s. Plain local numbers: this is where the time goes.
+    Trapezoidal integral, a point in the ring every 0.1 s. Plain local numbers, the sums too, which go where others
+    find them when a point is due: this is where the time goes.
     """
     now, report, gap = c["t"], c["next_report"], p["epoch_max_sample_gap"]
     point = c["ring_t"][c["ring_head"]] + RING_SPACING - 1e-9
     fx, fy, fz = c["f_s"][0], c["f_s"][1], c["f_s"][2]
     wx, wy, wz, blind = c["w_s"][0], c["w_s"][1], c["w_s"][2], c["no_gyro"]
-    total = c["integral"]
+    total, repeated = c["integral"], True
+    t0, t1, t2, t3, t4, t5, t6 = total[0], total[1], total[2], total[3], total[4], total[5], total[6]
     i = first
     while i < stop:
         time = t[i]
@@ -287,27 +289,32 @@ def integrate(p, c, t, f_s, w_s, first, stop, counts):
         half = 0.5 * (time - now)
         chained = half <= 0.5 * gap  # False for nan, the first sample of a session
         if chained:
-            total[0] += half * (fx + x)
-            total[1] += half * (fy + y)
-            total[2] += half * (fz + z)
-            total[3] += half * (wx + u)
-            total[4] += half * (wy + v)
-            total[5] += half * (wz + w)
-            total[6] += half * (blind + no_gyro)
+            t0 += half * (fx + x)
+            t1 += half * (fy + y)
+            t2 += half * (fz + z)
+            t3 += half * (wx + u)
+            t4 += half * (wy + v)
+            t5 += half * (wz + w)
+            t6 += half * (blind + no_gyro)
             if x == fx or y == fy or z == fz:
                 watch_repeats(c, x == fx, y == fy, z == fz, x, y, z)
-            else:
+                repeated = True
+            elif repeated:
                 c["repeats"][:] = 0
+                repeated = False
         fx, fy, fz, wx, wy, wz, blind, now = x, y, z, u, v, w, no_gyro, time
         if not chained:
             begin_chain(c, time)
+            t0 = t1 = t2 = t3 = t4 = t5 = t6 = 0.0
             point = time + RING_SPACING - 1e-9
         elif time >= point:
+            total[0], total[1], total[2], total[3], total[4], total[5], total[6] = t0, t1, t2, t3, t4, t5, t6
             push_point(c, time)
             point = time + RING_SPACING - 1e-9
         i += 1
         if not time < report:
             break
+    total[0], total[1], total[2], total[3], total[4], total[5], total[6] = t0, t1, t2, t3, t4, t5, t6
     c["samples"] += i - first
     c["t"], c["no_gyro"] = now, blind
     c["f_s"][0], c["f_s"][1], c["f_s"][2] = fx, fy, fz
@@ -970,7 +977,20 @@ def turn_rows(rows, t):
 
 
 @plain
-def keep_level_covariance(m, before, w):
+def mirror_rows(cov, n, first, last):
+    """Let columns [first, last) of a symmetric matrix be what its rows are; among these, what is left of the diagonal.
+
+    Every row that was changed is mirrored, the last one first: then what is left of the diagonal holds among them all.
+    """
+    for i in range(first, last):
+        for j in range(i):
+            cov[j, i] = cov[i, j]
+        for j in range(last, n):
+            cov[j, i] = cov[i, j]
+
+
+@plain
+def keep_level_covariance(m, before, n, w):
     """After a change of the attitude: its covariance stays what it is in the level frame."""
     after, t = w["r_turned"], w["turn"]
     rotation_matrix(m["q_nv"], after)
@@ -980,11 +1000,9 @@ def keep_level_covariance(m, before, w):
             for k in range(3):
                 t[i, j] += after[k, i] * before[k, j]
     cov = m["covariance"]
-    turn_rows(cov[ATTITUDE : ATTITUDE + 3, :], t)
-    turn_rows(cov[:, ATTITUDE : ATTITUDE + 3].T, t)
-    for i in range(cov.shape[0]):
-        for j in range(i):
-            cov[j, i] = cov[i, j]
+    turn_rows(cov[ATTITUDE : ATTITUDE + 3, :n], t)
+    turn_rows(cov[ATTITUDE : ATTITUDE + 3, ATTITUDE : ATTITUDE + 3].T, t)
+    mirror_rows(cov, n, ATTITUDE, ATTITUDE + 3)
 
 
 @plain
@@ -1142,9 +1160,9 @@ def predict_state(p, m, period, distance, r, bank, grade):
 
 
 @plain
-def transition_rows(cov, n, period, share, distance, up, bank, grade):
-    """F P for the transition F; `up` is the vertical in vehicle axes."""
-    for j in range(n):
+def transition_rows(cov, first, last, period, share, distance, up, bank, grade):
+    """F P in columns [first, last), for the transition F; `up` is the vertical in vehicle axes."""
+    for j in range(first, last):
         cov[ALTITUDE, j] += period * up[0] * cov[SPEED, j] + distance * (
             up[1] * cov[ATTITUDE + 2, j] - up[2] * cov[ATTITUDE + 1, j]
         )
@@ -1184,14 +1202,15 @@ def predict(p, m, period, n, w):
         add_motion_noise(p, cov, period)
     predict_state(p, m, period, distance, r, bank, grade)
     share = p["filter_mean_share"]
-    transition_rows(cov, n, period, share, distance, up, bank, grade)
-    transition_rows(cov.T, n, period, share, distance, up, bank, grade)
+    transition_rows(cov, 0, n, period, share, distance, up, bank, grade)
+    # F P F' differs from F P where F does from 1, and there the rows give what the columns would
+    for first, last in ((ALTITUDE, ALTITUDE + 1), (GRADIENT, MOUNTING), (SPEED, SPEED + 1)):
+        transition_rows(cov.T, first, last, period, share, distance, up, bank, grade)
+    for first, last in ((ALTITUDE, ALTITUDE + 1), (GRADIENT, MOUNTING), (SPEED, SPEED + 1)):
+        mirror_rows(cov, n, first, last)
     if not p["filter_constant_over_epoch"]:
         add_thesis_noise(p, m, cov, period)
     add_slow_noise(p, m, cov, period, distance)
-    for i in range(n):
-        for j in range(i):
-            cov[j, i] = cov[i, j]
 
 
 @plain
@@ -1464,7 +1483,7 @@ def update(p, m, e, n, w):
             part = ph[i]
             for j in range(n):
                 cov[i, j] -= part * ph[j]  # a square, which keeps the matrix exactly symmetric
-    fold(p, m, dx, w)
+    fold(p, m, dx, n, w)
     if not math.isfinite(m["altitude"]) and math.isfinite(e["altitude"]) and math.isfinite(p["filter_altitude_noise"]):
         begin_altitude(m, e["altitude"], p["filter_altitude_noise"])
 
@@ -1513,7 +1532,7 @@ def learn_road(p, m, distance, w):
 
 
 @plain
-def fold(p, m, dx, w):
+def fold(p, m, dx, n, w):
     """Fold the error state into the references and reset it (4.29), (4.30); the speed stays positive."""
     m["speed"] = max(m["speed"] + dx[SPEED], 0.0)
     m["acceleration"] += dx[ACCELERATION]
@@ -1523,7 +1542,7 @@ def fold(p, m, dx, w):
     rotation_matrix(m["q_nv"], before)
     turn_right(m["q_nv"], dx[ATTITUDE], dx[ATTITUDE + 1], dx[ATTITUDE + 2])
     if p["filter_level_errors"]:
-        keep_level_covariance(m, before, w)
+        keep_level_covariance(m, before, n, w)
     turn(m["q_vs"], dx[MOUNTING], dx[MOUNTING + 1], dx[MOUNTING + 2])
     for i in range(3):
         m["bias"][i] += dx[BIAS + i]
@@ -1551,7 +1570,7 @@ def start_where_possible(p, m, a, e, w):
             before = w["r_nv"]
             rotation_matrix(m["q_nv"], before)
             set_heading(m, e["course"])
-            keep_level_covariance(m, before, w)
+            keep_level_covariance(m, before, STATES, w)
             m["aligned"] = True
         return True
     if m["running"] and m["aligned"]:

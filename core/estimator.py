@@ -132,7 +132,7 @@ def advance(params: Parameters, state: State, samples: Samples) -> tuple[State, 
     )
     outcome = Outcome(
         samples=len(samples) - int(counts[0] + counts[1]),
-        fixes=int(samples.fix_valid.sum()) - int(counts[2] + counts[3]),
+        fixes=int(np.count_nonzero(samples.fix_valid)) - int(counts[2] + counts[3]),
         rejected={reason: int(n) for reason, n in zip(REJECTIONS, counts, strict=True) if n},
         estimates=_estimates(rows[:row_count]),
         events=tuple(_event(params, row, series) for row, series in zip(events[:event_count], evidence, strict=False)),

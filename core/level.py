@@ -85,4 +85,4 @@ def _level_attitude(params: Parameters, state: State) -> None:
         dx += gain * (-angle - dx[row])
         covariance -= np.outer(gain, covariance[row].copy())
     record["covariance"] = np.tril(covariance) + np.tril(covariance, -1).T
-    _kernel.fold(as_record(params)[0], record, dx, np.zeros(1, _kernel.WORK)[0])
+    _kernel.fold(as_record(params)[0], record, dx, _kernel.STATES, np.zeros(1, _kernel.WORK)[0])

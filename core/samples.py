@@ -23,6 +23,15 @@ FIX_COLUMNS = (
 )
 
 
+_NO_RATES = np.full((1 << 15, 3), np.nan)
+"""Shared by all samples without a gyroscope: written for each chunk anew, it would go twice through the memory."""
+
+
+def no_rates(n: int) -> Floats:
+    """Give the angular rates of samples without a gyroscope, (n, 3), all NaN; shared, so never written to."""
+    return _NO_RATES[:n] if n <= len(_NO_RATES) else np.full((n, 3), np.nan)
+
+
 class SampleError(ValueError):
     """Samples that cannot be used; `row` is the index of the first offending IMU sample, if one can be named."""
 
@@ -81,7 +90,7 @@ class Samples:
         t_ = np.ascontiguousarray(t, np.float64)
         n = t_.size
         f_s_ = np.ascontiguousarray(f_s, np.float64).reshape(-1, 3)
-        w_s_ = np.full((n, 3), np.nan) if w_s is None else np.ascontiguousarray(w_s, np.float64).reshape(-1, 3)
+        w_s_ = no_rates(n) if w_s is None else np.ascontiguousarray(w_s, np.float64).reshape(-1, 3)
         row = np.ascontiguousarray(fix_row, np.int64)
         valid = np.ascontiguousarray(fix_valid, np.bool_)
         fix_ = np.empty((0, 8)) if fix is None else np.ascontiguousarray(fix, np.float64).reshape(-1, 8)
@@ -104,8 +113,15 @@ class Samples:
         """Give the number of IMU samples."""
         return int(self.t.size)
 
+    @property
+    def has_rates(self) -> bool:
+        """True when the gyroscope has told an angular rate."""
+        return self.w_s.base is not _NO_RATES and bool(np.isfinite(self.w_s[:, 0]).any())
+
     def slice(self, start: int, stop: int) -> Self:
-        """Give the samples with index in [start, stop), with their fixes."""
+        """Give the samples with index in [start, stop), with their fixes; these themselves when that is all of them."""
+        if start == 0 and stop == len(self):
+            return self
         inside = (self.fix_row >= start) & (self.fix_row < stop)
         return type(self)(
             self.t[start:stop],

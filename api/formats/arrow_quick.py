@@ -139,17 +139,22 @@ def _flags(column: pa.Array, kind: np.dtype[Any]) -> tuple[Rows, Rows] | None:
 def _fixes(batch: pa.RecordBatch, plan: Plan, rows: Rows) -> Floats | None:
     """Give the fixes (M, 8), SI units and radians; None when one is not sound, or a number anywhere is infinite."""
     told = np.empty((len(plan.gps), rows.size))
-    filled = np.empty(told.shape, np.uint8)
+    gaps: list[tuple[int, NDArray[np.bool_]]] = []
+    before = _Filled(batch.column(plan.flag.place), None)  # it is filled on these rows
     for k, (place, kind, _) in enumerate(plan.gps):
         column = batch.column(place)
         values = _values(column, kind)
         if kind.kind == "f" and np.isinf(values).any():  # those behind nulls included
             return None
         told[k] = values[rows]
-        filled[k] = _filled_at(column, rows)
+        if not before.is_as(column):  # a receiver mostly tells all or nothing
+            before = _Filled(column, _gaps_at(column, rows))
+        if before.gaps is not None:
+            gaps.append((k, before.gaps))
     told *= plan.factors
     told += plan.offsets
-    told[filled == 0] = np.nan
+    for k, empty in gaps:
+        told[k, empty] = np.nan
     fix = np.full((rows.size, len(GPS)), np.nan)
     fix[:, plan.gps_places] = told.T
     return fix if _native_kernel.take_fixes(SLOW, fix) else None
@@ -169,11 +174,25 @@ def _filled(column: pa.Array) -> NDArray[np.bool_]:
     return np.unpackbits(np.frombuffer(bits, np.uint8), count=end, bitorder="little")[column.offset :].view(np.bool_)
 
 
-def _filled_at(column: pa.Array, rows: Rows) -> NDArray[np.uint8] | int:
-    """Tell on which of a few rows there is no null: 0 where there is."""
+class _Filled(NamedTuple):
+    """What is known of the nulls of a column."""
+
+    column: pa.Array
+    gaps: NDArray[np.bool_] | None
+    """which of the rows asked for are null; None: none is"""
+
+    def is_as(self, other: pa.Array) -> bool:
+        """Tell whether another column of the batch has its nulls on the same rows; False where that is not seen."""
+        own, others = self.column.buffers()[0], other.buffers()[0]
+        same = own is others if own is None or others is None else own.equals(others)
+        return same and self.column.offset == other.offset
+
+
+def _gaps_at(column: pa.Array, rows: Rows) -> NDArray[np.bool_] | None:
+    """Tell on which of a few rows there is null; None: on none."""
     bits = column.buffers()[0]
     if bits is None:
-        return 1
+        return None
     places = rows + column.offset
-    bit: NDArray[np.uint8] = np.frombuffer(bits, np.uint8)[places >> 3] & _BIT[places & 7]
-    return bit
+    empty: NDArray[np.bool_] = np.frombuffer(bits, np.uint8)[places >> 3] & _BIT[places & 7] == 0
+    return empty if empty.any() else None

@@ -53,20 +53,22 @@ def parse(content: bytes, limits: Limits, fingerprint: Fingerprint) -> ParsedLog
     except (pa.ArrowException, OSError, struct.error, IndexError, UnicodeDecodeError) as error:
         message = f"expected an Arrow IPC stream: {printable(str(error))}"
         raise FormatError.unreadable(Problem(None, None, "an Arrow IPC stream", message)) from error
-    checks.refuse_empty(batches.num_rows, line=1)
-    return ParsedLog(MEDIA_TYPE, fingerprint, head.notices, batches.num_rows, _sound(batches, head).read)
+    rows = sum(batch.num_rows for batch in batches)
+    checks.refuse_empty(rows, line=1)
+    return ParsedLog(MEDIA_TYPE, fingerprint, head.notices, rows, _sound(batches, head).read)
 
 
-def _sound(batches: pa.Table, head: _Head) -> NativeTable:
-    if head.plan is not None and len(pieces := batches.to_batches()) == 1:
-        packed = arrow_quick.pack(pieces[0], head.plan)
+def _sound(batches: list[pa.RecordBatch], head: _Head) -> NativeTable:
+    batches = [batch for batch in batches if batch.num_rows]
+    if head.plan is not None and len(batches) == 1:
+        packed = arrow_quick.pack(batches[0], head.plan)
         if packed is not None:
             return NativeTable(packed, {})
-    table = _table(batches, head.scales)
+    table = _table(pa.Table.from_batches(batches, head.schema), head.scales)
     return NativeTable.of(table, lambda row, column: Cell(row + 1, _shown(table.columns, row, column)))
 
 
-def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, _Head]:
+def _batches(content: bytes, limits: Limits) -> tuple[list[pa.RecordBatch], _Head]:
     messages = iter(pa.ipc.MessageReader.open_stream(pa.BufferReader(content)))
     if (first := next(messages, None)) is None:
         raise pa.ArrowInvalid("there is no schema")
@@ -78,7 +80,7 @@ def _batches(content: bytes, limits: Limits) -> tuple[pa.Table, _Head]:
         rows += batch.num_rows
         checks.refuse_rows(rows, limits)
         batches.append(batch)
-    return pa.Table.from_batches(batches, head.schema), head
+    return batches, head
 
 
 def _head(written: bytes) -> _Head:

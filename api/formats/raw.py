@@ -100,7 +100,7 @@ def _spread(values: Floats, samples: Samples, kind: type, empty: float) -> NDArr
 def _columns(samples: Samples) -> Columns:
     """Give the columns that are filled: of a sample (N,), of a report (M,)."""
     found = {"t": samples.t, **by_name(ACCELERATION, samples.f_s)}
-    if np.isfinite(samples.w_s[:, 0]).any():
+    if samples.has_rates:
         found |= by_name(RATE, samples.w_s)
     if samples.m_s is not None:
         found |= by_name(FIELD, samples.m_s)

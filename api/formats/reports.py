@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from api.formats.log import Context
 from core import Samples
+from core.samples import no_rates
 
 Rows = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -52,7 +53,7 @@ def _thin(t: Floats, rows: Rows, due: float) -> Rows:
 
 def make_samples(t: Floats, f_s: Floats, w_s: Floats | None, fix_rows: Rows, fix: Floats, none_rows: Rows) -> Samples:
     """Put fixes and reports without a fix into one table in the order of their rows; all are known to be sound."""
-    w_s = np.full((t.size, 3), np.nan) if w_s is None else w_s
+    w_s = no_rates(t.size) if w_s is None else w_s
     if not none_rows.size:
         return Samples(t, f_s, w_s, fix_rows, np.ones(fix_rows.size, np.bool_), fix)
     rows = np.concatenate([fix_rows, none_rows])

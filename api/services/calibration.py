@@ -309,9 +309,10 @@ class Calibration:
 
 def last_time(samples: core.Samples) -> float:
     """Give the last time of samples, refusing a clock that no device can have."""
-    if float(np.abs(samples.t[[0, -1]]).max()) > LONGEST_TIME:
+    first, last = float(samples.t[0]), float(samples.t[-1])
+    if max(abs(first), abs(last)) > LONGEST_TIME:
         raise UnusableError(f"The time is out of range: expected at most {LONGEST_TIME:.0e} s.")
-    return float(samples.t[-1])
+    return last
 
 
 def stage_began(before: core.Stage, outcome: core.Outcome, t_last: float) -> float | None:

@@ -28,7 +28,7 @@ def append(
     """Append the estimates of a chunk."""
     if rows.t.size == 0:
         return
-    changes = int(np.count_nonzero(np.diff(rows.stage, prepend=stage_before)))
+    changes = int(rows.stage[0] != stage_before) + int(np.count_nonzero(rows.stage[1:] != rows.stage[:-1]))
     span = (float(rows.t[0]), float(rows.t[-1]))
     estimates.add(tx, device_pk, session_pk, span, (rows.t.size, changes), pack(rows).tobytes(), now)
 

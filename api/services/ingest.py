@@ -10,6 +10,8 @@ import logging
 from datetime import timedelta
 from typing import NamedTuple
 
+import numpy as np
+
 from api import schemas
 from api.formats import FormatError, Limits, ParsedLog, Reading, parse, raw
 from api.services import last_data
@@ -166,7 +168,7 @@ def _receipt(calibration: Calibration, session: Session, chunk: Chunk, digest: s
     """Make the receipt of a chunk that waits; what cannot be used is refused now rather than when its turn comes."""
     samples, rejected, _ = reading
     span = (float(samples.t[0]), last_time(samples)) if len(samples) else (None, None)
-    fixes = int(samples.fix_valid.sum())
+    fixes = int(np.count_nonzero(samples.fix_valid))
     return Receipt(session.pk, chunk.seq, digest, WAITING, len(samples), fixes, rejected, calibration.now, *span)
 
 

@@ -3,8 +3,6 @@
 import math
 from typing import Any
 
-import numpy as np
-
 import core
 from api.formats.log import Reading
 
@@ -18,9 +16,9 @@ def describe(session: str, reading: Reading, outcome: core.Outcome) -> dict[str,
         "session": session,
         "sample_rate_hz": sample_rate,
         "fix_rate_hz": fix_rate,
-        "has_fix": bool(samples.fix_valid[-1:].any()),
+        "has_fix": bool(samples.fix_valid.size and samples.fix_valid[-1]),
         "speed_mps": round(outcome.speed, 2) if math.isfinite(outcome.speed) else None,
-        "gyroscope": bool(np.isfinite(samples.w_s).any()),
+        "gyroscope": samples.has_rates,
         "span_s": round(span, 3),
         "rejected": rejected(reading, outcome),
     }

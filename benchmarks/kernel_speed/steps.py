@@ -68,7 +68,7 @@ def _linearise(params: Any, filters: Any, epochs: Any, works: Any, n: int, f: An
     _kernel.road_transition(p["filter_grade_length"], distance, grade)
     _kernel.rotation_matrix(m["q_nv"], r)
     _kernel.remember_rows(f, n)
-    _kernel.transition_rows(f, n, e["period"], p["filter_mean_share"], distance, r[2].copy(), bank, grade)
+    _kernel.transition_rows(f, 0, n, e["period"], p["filter_mean_share"], distance, r[2].copy(), bank, grade)
     _kernel.predict(p, m, e["period"], n, w)
     z = np.empty(_kernel.MEASUREMENTS)
     _kernel.rotation_matrix(m["q_vs"], r)

@@ -24,7 +24,7 @@ GPS_RATE = 4.0
 """Hz"""
 DRIVES = 20
 BEFORE = 6
-"""minutes driven before the run: some devices are confirmed by then, others are not"""
+"""minutes driven before the run: every mounting is confirmed by then"""
 DURING = 4
 """minutes of the run"""
 CSV, ARROW = "CSV zstd", "Arrow zstd"

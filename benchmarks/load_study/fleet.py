@@ -17,9 +17,10 @@ from api.services.context import Context
 from api.settings import Settings
 from benchmarks.load_study.client import Body, Device
 from benchmarks.load_study.drives import ARROW, Drive, encode
-from storage import chunks, devices, installations, keys, models, sessions
+from storage import chunks, devices, installations, keys, models, mounts, sessions
 from storage.database import WriteSession
 from storage.installations import Installation
+from storage.mounts import Mount
 from storage.sessions import Session
 
 ADMIN_KEY = "admin-key-of-the-load-0123456789abcdef"
@@ -28,11 +29,20 @@ BATCH = 1000
 """devices put in by one transaction"""
 
 
+_ADD_MOUNT = sa.insert(models.mounts)
+
+
+class NotConfirmedError(Exception):
+    """The first minutes of a drive do not confirm the mounting: with less to watch over, a device would cost less."""
+
+
 class Prototype(NamedTuple):
     """Where a device stands after the first minutes of a drive."""
 
     installation: Installation
     session: Session
+    mount: Mount
+    """in force"""
 
 
 class Stored(NamedTuple):
@@ -62,7 +72,13 @@ def chunk(seq: int, body: Body, session: str = SESSION) -> ingest.Chunk:
 
 
 def prototypes(context: Context, drives: Sequence[Drive]) -> list[Prototype]:
-    """Drive the first minutes of every drive."""
+    """Drive the first minutes of every drive.
+
+    Raises
+    ------
+    NotConfirmedError
+        one of them leaves the mounting open.
+    """
     return [_prototype(context, f"prototype-{i:03}", drive) for i, drive in enumerate(drives)]
 
 
@@ -74,7 +90,10 @@ def _prototype(context: Context, name: str, drive: Drive) -> Prototype:
         installation = installations.find(tx, name)
         assert installation is not None
         session = sessions.find_or_add(tx, installation.device_pk, SESSION, context.clock())
-    return Prototype(installation, session)
+        mount = mounts.current(tx, installation.device_pk)
+    if mount is None or not mount.in_force:
+        raise NotConfirmedError(name)
+    return Prototype(installation, session, mount)
 
 
 def settle(context: Context, models_of: Sequence[Prototype], bodies: Sequence[Sequence[Body]], n: int) -> list[Device]:
@@ -97,6 +116,9 @@ def _put(tx: WriteSession, context: Context, name: str, like: Prototype, bodies:
     known = like.installation
     since = None if known.since_session_pk is None else session.pk
     installations.add(tx, known._replace(device_pk=pk, session_pk=session.pk, since_session_pk=since))
+    mount = like.mount._asdict()
+    del mount["started_at"]  # of its session
+    tx.execute(_ADD_MOUNT, device_pk=pk, session_pk=session.pk, **mount)
     return Device(name, key, SESSION, bodies, like.session.next_seq)
 
 

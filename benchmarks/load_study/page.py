@@ -16,9 +16,10 @@ TEXT = """## A fleet
 
 How many devices the service holds that send a minute of driving once a minute (200 Hz, three axes, GPS at 4 Hz), two
 server processes, database and load generator sharing the machine; made by `make bench-load`. Every device has driven
-for six minutes before and drives on; some mountings are confirmed, others are not. Samples are not
-kept (`LIVELLA_RAW_RETENTION_DAYS=0`; keeping them takes 2 to 4 ms more of the processor a
-chunk). CSV has decimals, Arrow what the sensors count: 16-bit accelerations, positions in 10⁻⁷ degrees.
+for six minutes before and drives on; its mounting is confirmed, so that events are looked for in its samples, and a
+second filter watches over it. Samples are not kept (`LIVELLA_RAW_RETENTION_DAYS=0`; keeping them takes 2 to 4 ms more
+of the processor a chunk). CSV has decimals, Arrow what the sensors count: 16-bit accelerations, positions in
+10⁻⁷ degrees.
 Chunks are due evenly spread over the minute, the devices in any order, not in the one in which they have connected.
 A chunk is due at its own time whatever became of those before it, and its latency counts
 from then. A count is held when 99 % of the answers come

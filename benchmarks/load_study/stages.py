@@ -8,14 +8,14 @@ from statistics import median
 from typing import TypeVar
 
 import core
-from api.services import access, ingest, intake
+from api.services import access, detecting, ingest, intake
 from api.services.context import Context
 from benchmarks.load_study import drives, fleet
 from benchmarks.load_study.client import Body, Device
-from storage import installations
+from storage import installations, mounts
 
 T = TypeVar("T")
-STAGES = ("auth", "parse", "decode", "advance", "encode", "store and the rest", "answer")
+STAGES = ("auth", "parse", "decode", "advance", "detect", "encode", "store and the rest", "answer")
 DEVICES = 40
 
 
@@ -36,16 +36,19 @@ def _chunk(context: Context, device: Device, body: Body) -> dict[str, float]:
     times: dict[str, float] = {}
     with context.database.read() as tx:
         row = installations.find(tx, device.name)
-    assert row is not None
+        assert row is not None
+        mount = mounts.current(tx, row.device_pk)
+    assert mount is not None
     assert row.snapshot is not None
     snapshot = row.snapshot
     _timed(times, "auth", lambda: access.authenticate(context, device.key))
     samples = _timed(times, "parse", lambda: ingest.read(context, chunk.body).samples(None)).samples
     state = _timed(times, "decode", lambda: core.decode(snapshot))
-    state, _ = _timed(times, "advance", lambda: core.advance(context.params, state, samples))
+    state, outcome = _timed(times, "advance", lambda: core.advance(context.params, state, samples))
+    _timed(times, "detect", lambda: detecting.detect(row.motion, mount.quaternion, outcome.events, samples))
     _timed(times, "encode", lambda: core.encode(state))
     answer = _timed(times, "whole", lambda: intake.receive(context, device.name, chunk))
-    known = sum(times[stage] for stage in ("parse", "decode", "advance", "encode"))
+    known = sum(times[stage] for stage in ("parse", "decode", "advance", "detect", "encode"))
     times["store and the rest"] = max(0.0, times.pop("whole") - known)
     _timed(times, "answer", answer.model_dump_json)
     return times

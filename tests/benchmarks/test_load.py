@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from api.formats.writer import write_native_csv
+from api.services import intake
 from benchmarks import naive
-from benchmarks.load_study import client, fleet, service
+from benchmarks.load_study import client, drives, fleet, service
 from benchmarks.load_study.cells import CELLS, NAIVE, Cell, why_not
 from benchmarks.load_study.client import Device, Run
 from benchmarks.load_study.drives import ARROW, CHUNK, CSV
@@ -23,6 +24,7 @@ from benchmarks.load_study.result import Meter, Result, Traffic, conclude, large
 from benchmarks.load_study.study import Study, carry_out
 from benchmarks.sections import with_section
 from core.simulation import Scenario, simulate
+from storage import installations
 
 PLAN = Plan(4, 20.0, 60.0)
 
@@ -209,6 +211,39 @@ def test_the_stages_are_timed_with_the_settings_of_the_service_under_load(tmp_pa
     context = fleet.open_context(f"sqlite:///{tmp_path / 'livella.db'}", tmp_path)
     context.database.close()
     assert context.settings.raw_retention_days == float(service.SETTINGS["LIVELLA_RAW_RETENTION_DAYS"])
+
+
+def test_a_device_of_the_fleet_stands_where_its_prototype_does(tmp_path: Path) -> None:
+    context = fleet.open_context(f"sqlite:///{tmp_path / 'livella.db'}", tmp_path)
+    try:
+        drive = drives.pool(1, during=1)[0]
+        (prototype,) = fleet.prototypes(context, [drive])
+        body = drives.encode(drive.during[0], drives.ARROW)
+        (device,) = fleet.settle(context, [prototype], [[body]], 1)
+        chunk = fleet.chunk(device.first_seq, body)
+        names = ("prototype-000", device.name)
+        told = [intake.receive(context, name, chunk).installation for name in names]
+        with context.database.read() as tx:
+            motion = [row.motion for row in (installations.find(tx, name) for name in names) if row is not None]
+    finally:
+        context.database.close()
+    expected, found = (one.model_dump(exclude={"device_id", "since", "last_data_at", "mount"}) for one in told)
+    assert found == expected
+    mounts = [one.mount for one in told]
+    assert mounts[0] is not None
+    assert mounts[1] is not None
+    assert mounts[1].quaternion == mounts[0].quaternion
+    assert motion[0] is not None
+    assert motion == [motion[0], motion[0]]
+
+
+def test_a_drive_that_confirms_nothing_is_none_for_the_fleet(tmp_path: Path) -> None:
+    context = fleet.open_context(f"sqlite:///{tmp_path / 'livella.db'}", tmp_path)
+    try:
+        with pytest.raises(fleet.NotConfirmedError):
+            fleet.prototypes(context, drives.pool(1, before=1, during=1))
+    finally:
+        context.database.close()
 
 
 def test_what_the_stages_do_not_explain_is_http_and_the_rest() -> None:

@@ -66,7 +66,7 @@ EPOCHS = random_epoch(0)
 def perturbed(params: Parameters, record: NDArray[np.void], index: int, step: float) -> NDArray[np.void]:
     record, dx = record.copy(), np.zeros(STATES)
     dx[index] = step
-    _kernel.fold(as_record(params)[0], record[0], dx, work())
+    _kernel.fold(as_record(params)[0], record[0], dx, _kernel.STATES, work())
     return record
 
 

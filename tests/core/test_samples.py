@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
-from core.samples import FIX_COLUMNS, SPEED, SampleError, Samples
+import core
+from core.motion import events
+from core.samples import FIX_COLUMNS, SPEED, SampleError, Samples, no_rates
+from core.simulation import Scenario, simulate
 
 F_S = [[0.1, 0.2, 9.8], [0.2, 0.1, 9.7], [0.0, 0.0, 9.9], [0.1, 0.1, 9.8]]
 T = [0.0, 0.1, 0.2, 0.3]
@@ -156,6 +159,36 @@ def test_two_slices_hold_everything_once(cut: int) -> None:
     np.testing.assert_array_equal(np.concatenate([first.fix, second.fix]), whole.fix)
     for part in (first, second):  # a slice would itself get past the border
         Samples.make(*columns(part))
+
+
+def test_all_of_it_is_the_same_thing() -> None:
+    whole = usual()
+    assert whole.slice(0, len(whole)) is whole
+
+
+def test_without_a_gyroscope_the_rates_are_shared_and_stay_unknown() -> None:
+    drive = simulate(Scenario(seconds=120.0, seed=3, gyro=False, imu_rate=50.0)).samples
+    bare = Samples.make(drive.t, drive.f_s, None, drive.fix_row, drive.fix_valid, drive.fix)
+    assert np.shares_memory(bare.w_s, no_rates(1))
+    state, _ = core.advance(core.DEFAULT, core.initial_state(core.DEFAULT), bare)
+    core.advance(core.DEFAULT, state, bare.slice(10, len(bare)))
+    events.advance(events.DEFAULT, events.initial_state(), [1.0, 0.0, 0.0, 0.0], bare)
+    assert np.isnan(no_rates(1 << 15)).all()
+    assert not bare.has_rates
+    assert not bare.slice(10, 20).has_rates
+
+
+@pytest.mark.parametrize("n", [0, 1, 1 << 15, (1 << 15) + 1])
+def test_rates_that_nobody_told_are_nan_for_any_number_of_samples(n: int) -> None:
+    assert no_rates(n).shape == (n, 3)
+    assert np.isnan(no_rates(n)).all()
+
+
+def test_rates_are_there_when_one_row_has_them() -> None:
+    w_s = np.full((4, 3), np.nan)
+    assert not Samples.make(T, F_S, w_s).has_rates
+    w_s[2] = 0.0
+    assert Samples.make(T, F_S, w_s).has_rates
 
 
 def test_readings_whose_sum_is_not_finite_are_finite() -> None:

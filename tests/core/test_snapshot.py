@@ -1,8 +1,11 @@
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
+import core
 from core import SnapshotError, decode, encode
+from core.simulation import Scenario, simulate
 from core.snapshot import SIZE
 from tests.core.drives import drive, result, run
 
@@ -36,3 +39,15 @@ def test_a_decoded_state_can_be_advanced_without_touching_the_bytes() -> None:
     loaded = decode(data)
     loaded.clock["t"] = 1.0
     assert encode(decode(data)) == data
+
+
+@pytest.mark.parametrize("gyro", [False, True])
+@pytest.mark.parametrize("params", core.PRESETS.values(), ids=core.PRESETS)
+def test_one_triangle_of_a_covariance_is_enough(params: core.Parameters, gyro: bool) -> None:
+    samples = simulate(Scenario(seconds=400.0, seed=5, gyro=gyro, imu_rate=50.0)).samples
+    state = core.initial_state(params)
+    for first in range(0, len(samples), 500):
+        state, _ = core.advance(params, state, samples.slice(first, min(first + 500, len(samples))))
+        for covariance in state.filter["covariance"]:
+            np.testing.assert_array_equal(covariance, covariance.T)
+    assert state.filter["running"][0]

@@ -140,6 +140,30 @@ def counts(rows: int, rng: np.random.Generator) -> pa.RecordBatch:
     return pa.RecordBatch.from_pydict({name: columns[name] for name in COUNTS})
 
 
+@pytest.mark.parametrize("cut", [0, 1, 8])
+def test_columns_with_the_same_gaps_as_others_and_with_other_ones(cut: int) -> None:
+    scales = {name: scale for name, (_, scale) in COUNTS.items() if scale is not None}
+    taken = 0
+    for seed in range(400):
+        rng = np.random.default_rng(seed)
+        sent = counts(20, rng)
+        columns = {name: sent.column(name) for name in sent.schema.names}
+        silent = rng.random(20) < 0.5
+        gaps = [silent, silent | (rng.random(20) < 0.2), silent & (rng.random(20) < 0.8)]
+        for name in ("fix", *(name for name in GPS if name in columns)):
+            values = columns[name].fill_null(1)
+            mask = silent if name == "fix" else gaps[rng.integers(0, 3)]
+            columns[name] = pa.array(values.to_numpy(zero_copy_only=False), values.type, mask=mask)
+        sent = pa.RecordBatch.from_pydict(columns).slice(cut)
+        quick, long = quickly(sent, scales), the_long_way(sent, scales)
+        if quick is not None:
+            assert_same(quick, long)
+            taken += 1
+        else:
+            assert long is None
+    assert taken > 30
+
+
 @pytest.mark.parametrize("cut", [0, 1, 7, 8, 13])
 def test_counts_with_a_scale_go_the_short_way_and_give_the_same(cut: int) -> None:
     scales = {name: scale for name, (_, scale) in COUNTS.items() if scale is not None}
