@@ -39,6 +39,13 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
     known, unknown, base, rest, smooth, tilting, fall, rise, road, pace = _shares(p, step)
     tilt2, plan2, pulse2 = p["handled_tilt"] ** 2, p["handled_plan"] ** 2, p["pulse_level"] ** 2
     pothole2, ratio2 = p["pothole"] ** 2, p["pothole_ratio"] ** 2
+    phase, base_clip, harsh_clip, unlean_x, unlean_y = (
+        r["phase"],
+        p["base_clip"],
+        p["harsh_clip"],
+        1.0 / lean_x,
+        1.0 / lean_y,
+    )
     i = first
     while i < n and count + 6 < out.shape[0]:
         t = ts[i]
@@ -57,7 +64,7 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
         if not dt <= p["max_gap"]:
             count = _break_off(p, r, handled, interval, out, count)
             bx = by = bz = rx = ry = rz = ux = uy = sx = sy = tx = ty = high = 0.0
-            low, last, handled, r["session_start"] = z, t, -math.inf, t
+            low, last, handled, r["session_start"], phase = z, t, -math.inf, t, r["phase"]
             i += 1
             continue
         last = t
@@ -74,28 +81,27 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
             oy += unknown * _clip(y - oy, p["offset_clip"])
         ax, ay = x - ox, y - oy
         # is the device in its place? a turn out of the vehicle's attitude says no
-        wx = turn[0, 0] * ws[i, 0] + turn[0, 1] * ws[i, 1] + turn[0, 2] * ws[i, 2]
-        wy = turn[1, 0] * ws[i, 0] + turn[1, 1] * ws[i, 1] + turn[1, 2] * ws[i, 2]
-        if not math.isnan(wx + wy):
-            tx += wx * dt - tilting * tx
-            ty += wy * dt - tilting * ty
-        if r["phase"] != PULSE:
-            rx += rest * (_clip(ax, p["base_clip"]) - rx)
-            ry += rest * (_clip(ay, p["base_clip"]) - ry)
-            rz += rest * (_clip(z, p["base_clip"]) - rz)
+        w0, w1, w2 = ws[i, 0], ws[i, 1], ws[i, 2]
+        if not math.isnan(w0 + w1 + w2):
+            tx += (turn[0, 0] * w0 + turn[0, 1] * w1 + turn[0, 2] * w2) * dt - tilting * tx
+            ty += (turn[1, 0] * w0 + turn[1, 1] * w1 + turn[1, 2] * w2) * dt - tilting * ty
+        ex, ey, ez = ax - bx, ay - by, z - bz
+        if phase != PULSE:
+            rx += rest * (_clip(ax, base_clip) - rx)
+            ry += rest * (_clip(ay, base_clip) - ry)
+            rz += rest * (_clip(z, base_clip) - rz)
+            bx += base * _clip(ex, base_clip)
+            by += base * _clip(ey, base_clip)
+            bz += base * _clip(ez, base_clip)
         if tx * tx + ty * ty > tilt2 or abs(rz) > p["handled_up"] or rx * rx + ry * ry > plan2:
             handled = t + p["handled_time"]
         # impacts
-        ex, ey = ax - bx, ay - by
-        if r["phase"] != PULSE:
-            bx += base * _clip(ax - bx, p["base_clip"])
-            by += base * _clip(ay - by, p["base_clip"])
-            bz += base * _clip(z - bz, p["base_clip"])
-        if r["phase"] != IDLE or ex * ex + ey * ey > pulse2:
+        if phase != IDLE or ex * ex + ey * ey > pulse2:
             count = _pulse(p, r, turn, t, dt, ax, ay, ex, ey, z - bz, f0, f1, f2, handled, interval, out, count)
+            phase = r["phase"]
         # harsh driving
-        ux += smooth * (_clip(ax / lean_x, p["harsh_clip"]) - ux)
-        uy += smooth * (_clip(ay / lean_y, p["harsh_clip"]) - uy)
+        ux += smooth * (_clip(ax * unlean_x, harsh_clip) - ux)
+        uy += smooth * (_clip(ay * unlean_y, harsh_clip) - uy)
         sx += smooth * (ux - sx)
         sy += smooth * (uy - sy)
         if r["harsh_on"][0] or sx < -p["harsh_braking"]:
