@@ -6,7 +6,7 @@ prior takes a state out of the filter: the `thesis` preset is the 9-state filter
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
@@ -328,11 +328,6 @@ class Parameters:
     report_interval: float = 1.0
     """s of log time between two reported estimates"""
 
-    @cached_property
-    def record(self) -> NDArray[np.void]:
-        """The parameters as `as_record` gives them; to look them up there, all of them are hashed."""
-        return _record_of(self)
-
 
 DEFAULT = Parameters()
 
@@ -408,16 +403,12 @@ PRESETS = {"default": DEFAULT, "thesis": THESIS}
 _STAGES = ("epoch", "coarse", "filter", "settling", "verification", "change", "fault")
 
 
+@lru_cache(maxsize=32)
 def as_record(params: Parameters) -> NDArray[np.void]:
     """Give the parameters as a structured array of shape (1,) for the kernel, names `stage_parameter`.
 
     The same array for the same parameters: numba looks a type up anew for every new dtype, which takes long.
     """
-    return params.record
-
-
-@lru_cache(maxsize=32)
-def _record_of(params: Parameters) -> NDArray[np.void]:
     values: dict[str, float | bool | int] = {"report_interval": params.report_interval}
     for stage in _STAGES:
         group = getattr(params, stage)
