@@ -43,6 +43,8 @@ LEVER_ARM, ALTITUDE, LATENCY, SUSPENSION, ANTENNA, GYRO_BIAS = 15, 17, 18, 19, 2
 BOUNCE, BOUNCE_BEFORE = 25, 27
 """First index of each part of the error state; those from GYRO_BIAS on are carried only with a gyroscope."""
 STATES = 29
+MOVED = ((ALTITUDE, ALTITUDE + 1), (GRADIENT, MOUNTING), (SPEED, SPEED + 1))
+"""Ranges of rows in which the transition differs from 1, the last first, as `mirror_rows` wants them."""
 FORCE, VELOCITY, COURSE_RATE, RATE, STANDSTILL, HEIGHT = 0, 3, 6, 7, 10, 11
 """First row of each measurement: specific force (3), velocity (3), yaw rate from the course, angular rate (3), yaw rate
 at standstill, altitude."""
@@ -1203,10 +1205,9 @@ def predict(p, m, period, n, w):
     predict_state(p, m, period, distance, r, bank, grade)
     share = p["filter_mean_share"]
     transition_rows(cov, 0, n, period, share, distance, up, bank, grade)
-    # F P F' differs from F P where F does from 1, and there the rows give what the columns would
-    for first, last in ((ALTITUDE, ALTITUDE + 1), (GRADIENT, MOUNTING), (SPEED, SPEED + 1)):
+    for first, last in MOVED:  # the columns where rows and columns have moved; elsewhere they are as the rows
         transition_rows(cov.T, first, last, period, share, distance, up, bank, grade)
-    for first, last in ((ALTITUDE, ALTITUDE + 1), (GRADIENT, MOUNTING), (SPEED, SPEED + 1)):
+    for first, last in MOVED:
         mirror_rows(cov, n, first, last)
     if not p["filter_constant_over_epoch"]:
         add_thesis_noise(p, m, cov, period)

@@ -39,13 +39,8 @@ def run(p, r, turn, ts, fs, ws, fix_row, fix_valid, fix, first, out):
     known, unknown, base, rest, smooth, tilting, fall, rise, road, pace = _shares(p, step)
     tilt2, plan2, pulse2 = p["handled_tilt"] ** 2, p["handled_plan"] ** 2, p["pulse_level"] ** 2
     pothole2, ratio2 = p["pothole"] ** 2, p["pothole_ratio"] ** 2
-    phase, base_clip, harsh_clip, unlean_x, unlean_y = (
-        r["phase"],
-        p["base_clip"],
-        p["harsh_clip"],
-        1.0 / lean_x,
-        1.0 / lean_y,
-    )
+    phase, base_clip, harsh_clip = r["phase"], p["base_clip"], p["harsh_clip"]
+    unlean_x, unlean_y = 1.0 / lean_x, 1.0 / lean_y
     i = first
     while i < n and count + 6 < out.shape[0]:
         t = ts[i]
